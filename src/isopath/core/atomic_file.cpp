@@ -1,0 +1,88 @@
+#include "isopath/core/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "isopath/core/error.h"
+
+namespace isopath {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& action, int error) {
+  throw Error(ErrorCode::bad_input, action + ": " + std::strerror(error),
+              {.file = path.string(), .advice = "check that the path exists and that you may use it"});
+}
+
+bool write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
+}
+
+/// The permissions an ordinary new file gets.
+mode_t default_mode() {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  return 0666 & ~mask;
+}
+
+}  // namespace
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+  if (path.has_parent_path()) {
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    if (error) fail(path, "cannot make its folder", error.value());
+  }
+  std::string temporary = path.string() + ".XXXXXX";
+  const int descriptor = ::mkstemp(temporary.data());
+  if (descriptor < 0) fail(path, "cannot write", errno);
+  bool good = write_all(descriptor, content) && ::fchmod(descriptor, default_mode()) == 0;
+  int error = errno;
+  good = ::close(descriptor) == 0 && good;
+  if (good && ::rename(temporary.c_str(), path.c_str()) != 0) {
+    good = false;
+    error = errno;
+  }
+  if (!good) {
+    ::unlink(temporary.c_str());
+    fail(path, "cannot write", error);
+  }
+}
+
+std::string read_whole_file(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, "cannot open", errno);
+  std::string content;
+  struct stat status {};
+  if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
+    content.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  constexpr std::size_t block = 1 << 20;
+  std::size_t size = 0;
+  for (;;) {
+    content.resize(size + block);
+    const ssize_t got = ::read(descriptor, content.data() + size, block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      const int error = errno;
+      ::close(descriptor);
+      fail(path, "cannot read", error);
+    }
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  ::close(descriptor);
+  content.resize(size);
+  return content;
+}
+
+}  // namespace isopath

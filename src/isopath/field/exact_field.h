@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/field/source.h"
+#include "isopath/field/surface_function.h"
+
+namespace isopath {
+
+struct ExactFieldOptions {
+  /// Windows that start farther than this are not propagated; points beyond are unreached or bounded from above.
+  double stop_distance = infinity;
+};
+
+/// The exact geodesic distance field of a source set on a polyhedral surface (paper ch. 4; Mitchell, Mount &
+/// Papadimitriou 1987; Bommes & Kobbelt 2007 for segments), with all its windows retained. The mesh must outlive the
+/// field.
+class ExactField final : public SurfaceFunction {
+ public:
+  /// Throws Error(bad_usage) for an empty source set, Error(cancelled) on request.
+  static ExactField compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options = {},
+                            Progress& progress = Progress::none());
+
+  ExactField(ExactField&&) noexcept;
+  ExactField& operator=(ExactField&&) noexcept;
+  ~ExactField() override;
+
+  const TriangleMesh& mesh() const;
+  /// Distance at every vertex in the mesh's order; infinity where no source reaches.
+  std::span<const double> vertex_distances() const;
+  /// The largest vertex distance that is finite.
+  double max_vertex_distance() const;
+
+  /// Distance, root id and direction of a point: all that the windows of its face tell.
+  struct Nearest {
+    double distance = infinity;
+    Index root = no_index;
+    Vec3 towards_source =
+        Vec3::Zero();  ///< unit vector in the face along which the shortest path leaves; zero on a source
+  };
+  Nearest nearest(const SurfacePoint& point) const;
+
+  /// The shortest path from a point back to its root, as points on consecutive edges; both ends included.
+  /// Empty where the point is unreached.
+  std::vector<SurfacePoint> shortest_path(const SurfacePoint& point) const;
+
+  std::size_t windows_kept() const;
+  std::size_t windows_propagated() const;
+
+  double value_at_vertex(Index vertex) const override;
+  double value(const SurfacePoint& point) const override;
+  Slope slope(const SurfacePoint& point) const override;
+  void edge_crossings(Index edge, double level, std::vector<double>& parameters) const override;
+  bool linear_in_faces() const override { return false; }
+  bool monotone_in_face(Index face) const override;
+  double max_slope() const override { return 1; }
+
+ private:
+  class Data;
+  explicit ExactField(std::unique_ptr<Data> data);
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace isopath
