@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isopath/contour/contour_graph.h"
+#include "isopath/core/progress.h"
+#include "isopath/impact/impact_curve.h"
+
+namespace isopath {
+
+/// How isolines become a curve (paper ch. 7).
+enum class Pattern {
+  contour,  ///< every isoline is a pass of its own
+  spiral,   ///< nested closed isolines become one spiral
+  meander,  ///< quasi-parallel open isolines are joined end to end
+  planar,   ///< the cutting-plane baseline: the function is a height, the isolines are plane cuts
+};
+std::string_view name_of(Pattern pattern);
+
+struct ImpactOptions {
+  Pattern pattern = Pattern::spiral;
+  double spacing = 0;     ///< distance between neighbouring passes, mm; required, > 0
+  double clearance = 0;   ///< height of lifts above the surface, mm; 0 takes the spacing
+  void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit
+};
+
+struct ImpactPlan {
+  ImpactCurve curve;
+  std::vector<Contour> contours;      ///< the isolines the curve was made from
+  std::vector<std::string> warnings;  ///< what the user should know, one sentence each
+};
+
+/// Covers the part of the surface where `function` is finite: isolines, contour graph, one curve for each run of
+/// contours, joined by links on the surface where these are short and by lifts elsewhere. Throws Error(no_plan) with
+/// the reason when nothing can be covered.
+ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options,
+                       Progress& progress = Progress::none());
+
+}  // namespace isopath
