@@ -10,6 +10,8 @@
 
 namespace isopath {
 
+class ExactFieldData;
+
 struct ExactFieldOptions {
   /// Windows that start farther than this are not propagated; points beyond are unreached or bounded from above.
   double stop_distance = infinity;
@@ -59,9 +61,8 @@ class ExactField final : public SurfaceFunction {
   double max_slope() const override { return 1; }
 
  private:
-  class Data;
-  explicit ExactField(std::unique_ptr<Data> data);
-  std::unique_ptr<Data> data_;
+  explicit ExactField(std::unique_ptr<ExactFieldData> data);
+  std::unique_ptr<ExactFieldData> data_;
 };
 
 }  // namespace isopath

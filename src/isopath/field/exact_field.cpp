@@ -1,0 +1,230 @@
+#include "isopath/field/exact_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "isopath/core/error.h"
+#include "isopath/field/exact_field_data.h"
+#include "isopath/field/window_propagation.h"
+
+namespace isopath {
+namespace {
+
+/// Calls visit(face) for every face that holds the point.
+template <class Visit>
+void for_each_face_at(const TriangleMesh& mesh, const SurfacePoint& point, Visit&& visit) {
+  const Support support = support_of(mesh, point);
+  if (support.kind == Support::Kind::vertex) {
+    const Index start = mesh.outgoing(support.index);
+    for (Index h = start; h != no_index;) {
+      visit(TriangleMesh::face_of(h));
+      h = mesh.next_outgoing(h);
+      if (h == start) break;
+    }
+    return;
+  }
+  visit(point.face);
+  if (support.kind == Support::Kind::edge && mesh.twin(support.index) != no_index) {
+    visit(TriangleMesh::face_of(mesh.twin(support.index)));
+  }
+}
+
+/// Lists the source elements of every face they touch.
+void index_sources(ExactFieldData& data) {
+  const auto elements = data.sources.elements();
+  std::vector<std::pair<Index, Index>> pairs;
+  for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
+    const SourceElement& element = elements[id];
+    if (element.kind == SourceElement::Kind::point) {
+      for_each_face_at(data.mesh, element.a, [&](Index f) { pairs.emplace_back(f, id); });
+      continue;
+    }
+    SurfacePoint middle = element.a;
+    middle.barycentric = 0.5 * (element.a.barycentric + element.b.barycentric);
+    for_each_face_at(data.mesh, middle, [&](Index f) { pairs.emplace_back(f, id); });
+  }
+  std::sort(pairs.begin(), pairs.end());
+  data.first_source.assign(data.mesh.n_faces() + 1, 0);
+  for (const auto& [f, id] : pairs) {
+    ++data.first_source[f + 1];
+    data.face_sources.push_back(id);
+  }
+  for (Index f = 0; f < data.mesh.n_faces(); ++f) data.first_source[f + 1] += data.first_source[f];
+}
+
+/// Moves the windows of each edge side by side.
+void gather_windows(EdgeWindows& lists, ExactFieldData& data) {
+  data.windows.reserve(lists.live());
+  data.first_window.reserve(data.mesh.n_edges() + 1);
+  data.first_window.push_back(0);
+  for (Index e = 0; e < data.mesh.n_edges(); ++e) {
+    for (Index id = lists.first(e); id != no_index; id = lists[id].next) data.windows.push_back(lists[id]);
+    data.first_window.push_back(data.windows.size());
+  }
+}
+
+Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {
+  const auto& [a, b, c] = mesh.triangle(face);
+  const Vec3 x = (mesh.position(b) - mesh.position(a)).stableNormalized();
+  const Vec3 y = mesh.face_normal(face).cross(x);
+  return v.x() * x + v.y() * y;
+}
+
+}  // namespace
+
+ExactField::ExactField(std::unique_ptr<ExactFieldData> data) : data_(std::move(data)) {}
+ExactField::ExactField(ExactField&&) noexcept = default;
+ExactField& ExactField::operator=(ExactField&&) noexcept = default;
+ExactField::~ExactField() = default;
+
+ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
+                               Progress& progress) {
+  if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
+  auto data = std::make_unique<ExactFieldData>(mesh, sources);
+  index_sources(*data);
+  WindowPropagation propagation(mesh, data->geometry, sources);
+  propagation.run(options.stop_distance, progress);
+  data->distance = std::move(propagation.vertex_distances());
+  data->root = std::move(propagation.vertex_roots());
+  data->emitted = std::move(propagation.emitted());
+  data->propagated = propagation.propagated();
+  gather_windows(propagation.windows(), *data);
+  return ExactField(std::move(data));
+}
+
+const TriangleMesh& ExactField::mesh() const { return data_->mesh; }
+std::span<const double> ExactField::vertex_distances() const { return data_->distance; }
+std::size_t ExactField::windows_kept() const { return data_->windows.size(); }
+std::size_t ExactField::windows_propagated() const { return data_->propagated; }
+double ExactField::value_at_vertex(Index vertex) const { return data_->distance[vertex]; }
+double ExactField::value(const SurfacePoint& point) const { return nearest(point).distance; }
+
+double ExactField::max_vertex_distance() const {
+  double largest = 0;
+  for (const double d : data_->distance) {
+    if (d < infinity) largest = std::max(largest, d);
+  }
+  return largest;
+}
+
+ExactField::Nearest ExactField::nearest(const SurfacePoint& point) const {
+  const Support support = support_of(data_->mesh, point);
+  const WayBack way = best_way_back(*data_, point.face, point.barycentric);
+  Nearest result{way.distance, way.root};
+  if (way.towards != Vec2::Zero()) result.towards_source = in_space(data_->mesh, point.face, way.towards.normalized());
+  if (support.kind == Support::Kind::vertex) {
+    result.distance = data_->distance[support.index];
+    result.root = data_->root[support.index];
+  }
+  return result;
+}
+
+SurfaceFunction::Slope ExactField::slope(const SurfacePoint& point) const {
+  const Nearest nearest_source = nearest(point);
+  return {nearest_source.distance, -nearest_source.towards_source};
+}
+
+void ExactField::edge_crossings(Index edge, double level, std::vector<double>& parameters) const {
+  const auto windows = data_->windows_of(edge);
+  if (windows.empty()) return;
+  const Index h = data_->mesh.halfedge_of(edge);
+  const double length = data_->geometry.length(h);
+  bool above = data_->distance[data_->mesh.from(h)] >= level;
+  const bool ends_above = data_->distance[data_->mesh.to(h)] >= level;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const Window& w = windows[i];
+    const bool last = i + 1 == windows.size();
+    const bool above_after =
+        last ? ends_above : std::min(w.distance(w.end), windows[i + 1].distance(windows[i + 1].begin)) >= level;
+    const double r = level - w.offset;
+    const auto add = [&](double x) { parameters.push_back(std::clamp(x, w.begin, w.end) / length); };
+    if (above != above_after) {
+      if (w.kind == Window::Kind::line) {
+        add(w.source.x() != 0 ? r / w.source.x() : 0.5 * (w.begin + w.end));
+      } else {
+        const double half = std::sqrt(std::max(0.0, r * r - w.source.y() * w.source.y()));
+        add(above ? w.source.x() - half : w.source.x() + half);
+      }
+    } else if (above && w.kind == Window::Kind::point && w.min_distance() < level) {
+      const double half = std::sqrt(std::max(0.0, r * r - w.source.y() * w.source.y()));
+      add(w.source.x() - half);
+      add(w.source.x() + half);
+    }
+    above = above_after;
+  }
+}
+
+bool ExactField::monotone_in_face(Index face) const {
+  // The distance is a least one of fronts; where all their directions lie in one open half-plane it grows along its
+  // axis everywhere.
+  if (!data_->sources_in(face).empty()) return false;
+  const auto& geometry = data_->geometry;
+  std::vector<Vec2> directions;
+  for (int i = 0; i < 3; ++i) {
+    const Index h = 3 * face + i;
+    const Vec2 tail = geometry.in_frame(3 * face, Vec3::Unit(i));
+    const Vec2 head = geometry.in_frame(3 * face, Vec3::Unit((i + 1) % 3));
+    const Vec2 third = geometry.in_frame(3 * face, Vec3::Unit((i + 2) % 3));
+    if (data_->emitted[data_->mesh.triangle(face)[i]]) {
+      directions.push_back((head - tail).normalized());
+      directions.push_back((third - tail).normalized());
+    }
+    const Index edge = data_->mesh.edge_of(h);
+    const Vec2 axis = (head - tail).normalized();
+    const double sign = data_->mesh.halfedge_of(edge) == h ? 1 : -1;
+    for (const Window& w : data_->windows_of(edge)) {
+      if (w.halfedge != h) continue;
+      for (const double x : {w.begin, w.end}) {
+        const Vec2 d = sign * w.direction(x);
+        directions.push_back(axis * d.x() + Vec2(-axis.y(), axis.x()) * d.y());
+      }
+    }
+  }
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& d : directions) mean += d;
+  return std::all_of(directions.begin(), directions.end(), [&](const Vec2& d) { return d.dot(mean) > 0; });
+}
+
+std::vector<SurfacePoint> ExactField::shortest_path(const SurfacePoint& point) const {
+  std::vector<SurfacePoint> path{point};
+  if (value(point) == infinity) return {};
+  const std::size_t most_steps = 16 * static_cast<std::size_t>(data_->mesh.n_faces()) + 16;
+  while (path.size() < most_steps) {
+    const SurfacePoint here = path.back();
+    const Support support = support_of(data_->mesh, here);
+    if (support.kind == Support::Kind::vertex && data_->distance[support.index] == 0) break;
+    WayBack best;
+    SurfacePoint from;
+    for_each_face_at(data_->mesh, here, [&](Index face) {
+      const SurfacePoint p = express_in(data_->mesh, here, face);
+      SkippedEdges skipped;
+      for (int i = 0; i < 3; ++i) {
+        skipped.skip[i] = p.barycentric[(i + 2) % 3] == 0;
+      }
+      const WayBack way = best_way_back(*data_, face, p.barycentric, skipped);
+      if (way.distance < best.distance) {
+        best = way;
+        from = p;
+      }
+    });
+    if (best.stop == WayBack::Stop::none) break;
+    if (best.stop == WayBack::Stop::vertex) {
+      path.push_back(point_at_vertex(data_->mesh, best.at));
+    } else if (best.stop == WayBack::Stop::edge) {
+      const double t = std::clamp(best.x / data_->geometry.length(best.at), 0.0, 1.0);
+      path.push_back(t == 0 || t == 1
+                         ? point_at_vertex(data_->mesh, t == 0 ? data_->mesh.from(best.at) : data_->mesh.to(best.at))
+                         : point_on_halfedge(best.at, t));
+    } else {
+      const SourceElement& element = data_->sources.elements()[best.at];
+      SurfacePoint end = express_in(data_->mesh, element.a, from.face);
+      const SurfacePoint b = express_in(data_->mesh, element.b, from.face);
+      end.barycentric = (1 - best.x) * end.barycentric + best.x * b.barycentric;
+      if (end.barycentric != from.barycentric) path.push_back(end);
+      break;
+    }
+  }
+  return path;
+}
+
+}  // namespace isopath

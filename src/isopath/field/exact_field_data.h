@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/source.h"
+#include "isopath/field/window.h"
+
+namespace isopath {
+
+/// What an exact field keeps: the windows of every edge side by side, vertex distances and roots, and which sources lie
+/// in a face.
+class ExactFieldData {
+ public:
+  ExactFieldData(const TriangleMesh& m, const SourceSet& s) : mesh(m), geometry(m), sources(s) {}
+
+  std::span<const Window> windows_of(Index edge) const {
+    return {windows.data() + first_window[edge], windows.data() + first_window[edge + 1]};
+  }
+  std::span<const Index> sources_in(Index face) const {
+    return {face_sources.data() + first_source[face], face_sources.data() + first_source[face + 1]};
+  }
+
+  const TriangleMesh& mesh;
+  IntrinsicGeometry geometry;
+  SourceSet sources;
+  std::vector<Window> windows;
+  std::vector<std::size_t> first_window;  ///< per edge, and one past the last
+  std::vector<double> distance;           ///< per vertex
+  std::vector<Index> root;                ///< per vertex
+  std::vector<char> emitted;              ///< per vertex: source or pseudo-source
+  std::vector<Index> face_sources;        ///< element ids, face by face
+  std::vector<std::size_t> first_source;
+  std::size_t propagated = 0;
+};
+
+/// The way from a point of a face back towards the sources: straight to a source inside the face, to a corner, or
+/// through an edge.
+struct WayBack {
+  enum class Stop { none, source, vertex, edge };
+  double distance = infinity;  ///< length of the whole path
+  Index root = no_index;
+  Stop stop = Stop::none;
+  Index at = no_index;          ///< source element, vertex, or half-edge of the face
+  double x = 0;                 ///< on the half-edge, or fraction along the source element
+  Vec2 towards = Vec2::Zero();  ///< to the unfolded source, in the frame of half-edge 3·face
+};
+
+/// The shortest way back from a point of a face. Ways through edges that `skip` marks (by corner index of their tail)
+/// and to corners that hold the point itself are left out.
+struct SkippedEdges {
+  bool skip[3] = {false, false, false};
+};
+WayBack best_way_back(const ExactFieldData& data, Index face, const Vec3& barycentric,
+                      const SkippedEdges& skipped = {});
+
+}  // namespace isopath
