@@ -19,7 +19,11 @@ struct Contour {
 struct IsolineOptions {
   double chord_tolerance = 0;  ///< largest distance of a chord from the isoline; 0 takes 1e-4 of the model's size
   void validate() const;       ///< throws Error(bad_usage)
+  double chord_tolerance_for(const TriangleMesh& mesh) const;  ///< with the default filled in
 };
+
+/// Throws Error(bad_usage) naming the first level that is not finite or not above the one before.
+void validate_levels(std::span<const double> levels);
 
 /// All contours of the given levels, ordered by level; linear time in their length (paper ch. 5).
 /// Every point p satisfies |f(p) - level| <= 1e-9 × model size × slope. Levels must be finite and ascending.
