@@ -1,0 +1,109 @@
+#include "isopath/plan/job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <utility>
+
+#include "isopath/core/error.h"
+
+namespace isopath {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 5> patterns = {{{"auto", std::nullopt},
+                                                                                          {"contour", Pattern::contour},
+                                                                                          {"spiral", Pattern::spiral},
+                                                                                          {"meander", Pattern::meander},
+                                                                                          {"planar", Pattern::planar}}};
+
+[[noreturn]] void refuse_name(const char* what, std::string_view name, const std::vector<std::string_view>& allowed) {
+  throw Error(ErrorCode::bad_usage, fmt::format("unknown {}", what),
+              {.value = fmt::format("'{}'", name), .advice = fmt::format("allowed: {}", fmt::join(allowed, ", "))});
+}
+
+template <class Value, std::size_t n>
+Value value_named(const char* what, std::string_view name, const std::array<Value, n>& values) {
+  std::vector<std::string_view> names;
+  for (const Value& value : values) {
+    if (name_of(value) == name) return value;
+    names.push_back(name_of(value));
+  }
+  refuse_name(what, name, names);
+}
+
+[[noreturn]] void refuse(const char* field, std::string value, std::string advice = {}) {
+  throw Error(ErrorCode::bad_usage, "the job cannot be run like this",
+              {.element = field, .value = std::move(value), .advice = std::move(advice)});
+}
+
+}  // namespace
+
+std::string_view name_of(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::millimetre:
+      return "mm";
+    case LengthUnit::centimetre:
+      return "cm";
+    case LengthUnit::metre:
+      return "m";
+    case LengthUnit::inch:
+      return "inch";
+  }
+  return "";
+}
+
+double millimetres_in(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::millimetre:
+      return 1;
+    case LengthUnit::centimetre:
+      return 10;
+    case LengthUnit::metre:
+      return 1000;
+    case LengthUnit::inch:
+      return 25.4;
+  }
+  return 1;
+}
+
+std::string_view name_of(const std::optional<Pattern>& pattern) {
+  for (const auto& [name, choice] : patterns) {
+    if (choice == pattern) return name;
+  }
+  return "";
+}
+
+std::optional<Pattern> pattern_of(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const auto& [known, choice] : patterns) {
+    if (known == name) return choice;
+    names.push_back(known);
+  }
+  refuse_name("pattern", name, names);
+}
+
+Process process_of(std::string_view name) {
+  return value_named("process", name, std::array{Process::spray, Process::mill, Process::grind});
+}
+
+LengthUnit unit_of(std::string_view name) {
+  return value_named("unit", name,
+                     std::array{LengthUnit::millimetre, LengthUnit::centimetre, LengthUnit::metre, LengthUnit::inch});
+}
+
+void Job::validate() const {
+  if (mesh.empty()) refuse("mesh", "no file is named", "name the mesh file to plan on");
+  if (sources.empty() && pattern != Pattern::planar) refuse("sources", "none given", "'auto' chooses one");
+  if (!(spacing >= 0) || spacing == infinity) refuse("spacing", fmt::format("{}, allowed is 0 or more", spacing));
+  if (!(clearance >= 0) || clearance == infinity) {
+    refuse("clearance", fmt::format("{}, allowed is 0 or more", clearance));
+  }
+  if (!planar_direction.allFinite() || planar_direction.isZero(0)) {
+    refuse("planar_direction",
+           fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
+  }
+  tool.validate();
+}
+
+}  // namespace isopath

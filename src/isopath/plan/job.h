@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isopath/core/geometry.h"
+#include "isopath/impact/impact_plan.h"
+#include "isopath/plan/source_spec.h"
+#include "isopath/tool/tool_model.h"
+
+namespace isopath {
+
+/// Unit of the coordinates in a mesh file.
+enum class LengthUnit { millimetre, centimetre, metre, inch };
+std::string_view name_of(LengthUnit unit);  ///< mm, cm, m, inch
+double millimetres_in(LengthUnit unit);
+
+/// Everything a planning run needs. A job file holds the same, and a run writes the job it used beside its results.
+/// Lengths in mm, angles in radians, feeds in mm/min.
+struct Job {
+  std::filesystem::path mesh;                        ///< required; relative to the working folder
+  LengthUnit unit = LengthUnit::millimetre;          ///< unit of the mesh file's coordinates
+  std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
+  std::optional<Pattern> pattern = {};               ///< none: spiral where the isolines are closed, meander where open
+  Vec3 planar_direction = Vec3::UnitX();   ///< planar: the direction the cutting planes follow each other in, not 0
+  double spacing = 0;                      ///< between neighbouring passes; 0 takes 1/60 of the part's size
+  double clearance = 0;                    ///< height of lifts above the surface; 0 takes the spacing
+  ToolOptions tool = {};                   ///< process, tool, feeds
+  std::vector<std::string> programs = {};  ///< formats to write the program in, of `program_formats()`
+  bool report = true;                      ///< write report.html
+
+  /// Throws Error(bad_usage) naming the field, its value and its limit.
+  void validate() const;
+};
+
+/// The name a job file gives a pattern: `auto` for none.
+std::string_view name_of(const std::optional<Pattern>& pattern);
+/// Its inverse. Throws Error(bad_usage) listing the allowed names.
+std::optional<Pattern> pattern_of(std::string_view name);
+/// Throw Error(bad_usage) listing the allowed names.
+Process process_of(std::string_view name);
+LengthUnit unit_of(std::string_view name);
+
+/// Reads a job file (YAML). Paths in it are relative to its folder. Throws Error(bad_input) with file, line, key,
+/// value and what is allowed, also for unknown keys and keys given twice.
+Job read_job(const std::filesystem::path& path);
+
+/// The job as YAML for a file in `folder`: paths are written relative to it, numbers with all their digits, so that
+/// `read_job` gives back the same job.
+std::string job_yaml(const Job& job, const std::filesystem::path& folder);
+
+}  // namespace isopath

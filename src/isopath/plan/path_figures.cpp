@@ -1,0 +1,115 @@
+#include "isopath/plan/path_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "isopath/core/error.h"
+
+namespace isopath {
+namespace {
+
+/// A polyline in space with the arc length at each of its points, which are all distinct.
+class Polyline {
+ public:
+  void append(const Vec3& point) {
+    if (!points_.empty() && points_.back() == point) return;
+    arc_.push_back(points_.empty() ? 0 : arc_.back() + (point - points_.back()).norm());
+    points_.push_back(point);
+  }
+  std::size_t size() const { return points_.size(); }
+  double length() const { return arc_.empty() ? 0 : arc_.back(); }
+  double arc(std::size_t i) const { return arc_[i]; }
+  const Vec3& point(std::size_t i) const { return points_[i]; }
+
+  Vec3 at(double arc) const {
+    const auto above = std::upper_bound(arc_.begin(), arc_.end(), arc);
+    const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(above - arc_.begin()), 1, size() - 1);
+    const double fraction = (arc - arc_[j - 1]) / (arc_[j] - arc_[j - 1]);
+    return points_[j - 1] + fraction * (points_[j] - points_[j - 1]);
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<double> arc_;
+};
+
+/// Maximal stretches of moves whose kind `take` accepts, each with the point it starts from.
+template <class Take>
+std::vector<Polyline> stretches(const ImpactCurve& curve, Take take) {
+  std::vector<Polyline> found;
+  bool inside = false;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const ImpactPoint& point = curve.points[i];
+    // The first point of the curve arrives from nowhere; it only starts a stretch.
+    if (i == 0 || !take(point.kind)) {
+      inside = false;
+      continue;
+    }
+    if (!inside) found.emplace_back().append(curve.points[i - 1].position);
+    found.back().append(point.position);
+    inside = true;
+  }
+  return found;
+}
+
+/// Radius of the circle through three points: the product of the sides over four times the area.
+double circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double twice_area = (b - a).cross(c - a).norm();
+  const double product = (b - a).norm() * (c - b).norm() * (a - c).norm();
+  // Three points in line, up to rounding, have no circle; two that fall together are a reversal.
+  if (product == 0) return 0;
+  return twice_area <= 1e-9 * (b - a).norm() * (c - b).norm() ? infinity : product / (2 * twice_area);
+}
+
+double smallest_radius(const Polyline& line, double reach) {
+  double least = infinity;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double s = line.arc(i);
+    if (s < reach || s + reach > line.length()) continue;
+    least = std::min(least, circumradius(line.at(s - reach), line.point(i), line.at(s + reach)));
+  }
+  return least;
+}
+
+Index count_corners(const Polyline& line, double reach) {
+  const double cos_limit = std::cos(std::numbers::pi / 4);
+  Index count = 0;
+  double last = -infinity;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    const double s = line.arc(i);
+    if (s < reach || s + reach > line.length()) continue;
+    const Vec3 arriving = line.point(i) - line.at(s - reach);
+    const Vec3 leaving = line.at(s + reach) - line.point(i);
+    if (arriving.dot(leaving) >= cos_limit * arriving.norm() * leaving.norm()) continue;
+    if (s - last > 2 * reach) ++count;
+    last = s;
+  }
+  return count;
+}
+
+}  // namespace
+
+PathFigures path_figures(const ImpactCurve& curve, double spacing) {
+  if (!(spacing > 0)) {
+    throw Error(ErrorCode::bad_usage, "the spacing must be above zero",
+                {.element = "spacing", .value = fmt::format("{}", spacing)});
+  }
+  PathFigures figures;
+  figures.cover_length = length_of(curve, MoveKind::cover);
+  figures.links_length = length_of(curve, MoveKind::link);
+  figures.pieces = curve.points.empty() ? 0 : curve.points.back().piece + 1;
+  figures.lifts = std::max<Index>(figures.pieces - 1, 0);
+  for (const Polyline& line : stretches(curve, [](MoveKind kind) { return kind == MoveKind::cover; })) {
+    figures.min_radius = std::min(figures.min_radius, smallest_radius(line, spacing / 2));
+  }
+  for (const Polyline& line : stretches(curve, [](MoveKind kind) { return kind != MoveKind::lift; })) {
+    figures.sharp_corners += count_corners(line, spacing / 20);
+  }
+  return figures;
+}
+
+}  // namespace isopath

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "isopath/impact/impact_curve.h"
+
+namespace isopath {
+
+/// Figures of an impact curve that tell how smoothly a tool can follow it.
+struct PathFigures {
+  double cover_length = 0;  ///< mm
+  double links_length = 0;  ///< mm
+  Index pieces = 0;         ///< stretches between lifts
+  Index lifts = 0;
+  /// Smallest radius of the circles through a point of a covering stretch and the points half a spacing of arc before
+  /// and behind it; infinity where all is straight or too short. A window that long sees the curve and not its chords.
+  double min_radius = infinity;
+  /// Turns by more than 45 degrees on the surface, seen over a twentieth of the spacing on either side, so that neither
+  /// a chain of tiny chords hides a corner nor noise between them makes one.
+  Index sharp_corners = 0;
+};
+
+/// Throws Error(bad_usage) unless spacing > 0.
+PathFigures path_figures(const ImpactCurve& curve, double spacing);
+
+}  // namespace isopath
