@@ -266,7 +266,7 @@ TriangleMesh torus(int n_major, int n_minor, double major, double minor) {
 }
 
 TriangleMesh wavy_sheet(int n, double side, double a, double b, double c, std::uint64_t seed) {
-  TriangleSoup soup = grid_soup(n, n, side, side, {.jitter = 0.3, .seed = seed});
+  TriangleSoup soup = grid_soup(n, n, side, side, {.jitter = 0.2, .seed = seed});
   for (Vec3& p : soup.positions) p.z() = a * std::sin(b * p.x()) * std::cos(c * p.y());
   return TriangleMesh(std::move(soup));
 }

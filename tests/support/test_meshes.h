@@ -19,7 +19,7 @@ enum class Diagonal { regular, union_jack };
 
 struct GridOptions {
   Diagonal diagonal = Diagonal::regular;
-  double jitter = 0;  ///< inner vertices move by up to this fraction of a cell, below 0.5
+  double jitter = 0;  ///< inner vertices move by up to this fraction of a cell; below 0.25 no triangle turns over
   std::uint64_t seed = 1;
 };
 

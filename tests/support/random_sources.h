@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "isopath/field/source.h"
+#include "support/test_meshes.h"
+
+namespace isopath::test {
+
+/// A walk over the surface from face to face, of up to `n` points, whose consecutive points share a face.
+std::vector<SurfacePoint> random_polyline(Rng& rng, const TriangleMesh& mesh, int n);
+/// A closed polyline round an inner vertex, over its edges; empty when the mesh has no inner vertex.
+std::vector<SurfacePoint> random_loop(Rng& rng, const TriangleMesh& mesh);
+/// One to `most` sources of every kind: points of all supports, polylines, loops, chains of edges, boundary loops.
+SourceSet random_sources(Rng& rng, const TriangleMesh& mesh, int most = 3);
+
+}  // namespace isopath::test
