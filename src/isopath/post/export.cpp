@@ -7,6 +7,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/post/csv.h"
+#include "isopath/post/path_vtp.h"
 #include "isopath/post/poses.h"
 
 namespace isopath {
@@ -20,6 +21,7 @@ constexpr std::array formats = {
     ExportFormat{"csv", ".csv", "tool.csv: tip, axis, feed and time of every point"},
     ExportFormat{"yaml", ".yaml", "poses of the tool's frame, YAML"},
     ExportFormat{"json", ".json", "poses of the tool's frame, JSON"},
+    ExportFormat{"vtp", ".vtp", "polylines with kind, piece, length, time, feed and axis, for ParaView"},
 };
 
 std::string write_gcode(const ToolPath& path, GcodeOptions options, GcodeAxes axes) {
@@ -34,6 +36,7 @@ constexpr std::array<WriteFunction, formats.size()> writers = {
     [](const ToolPath& path, const GcodeOptions&) { return tool_csv(path); },
     [](const ToolPath& path, const GcodeOptions&) { return poses_yaml(path); },
     [](const ToolPath& path, const GcodeOptions&) { return poses_json(path); },
+    [](const ToolPath& path, const GcodeOptions&) { return path_vtp(path); },
 };
 
 }  // namespace
