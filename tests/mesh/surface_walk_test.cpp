@@ -85,6 +85,22 @@ TEST(SurfaceWalk, RunsAlongEdgesAndThroughVertices) {
   }
 }
 
+TEST(SurfaceWalk, HitsVerticesExactlyInSpiteOfRounding) {
+  const TriangleMesh flat = shapes::plane(30, 30, 30, 30);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> part(-1, 1);
+    const Vec3 axis = Vec3(part(random), part(random), part(random)).normalized();
+    TriangleSoup soup = flat.soup();
+    const Eigen::AngleAxisd turn(3 * part(random), axis);
+    for (Vec3& p : soup.positions) p = turn * p;
+    const TriangleMesh mesh(std::move(soup));
+    const auto way = surface_walk(mesh, point_at_vertex(mesh, 0), point_at_vertex(mesh, 31 * 31 - 1));
+    ASSERT_EQ(way.size(), 31u) << "seed " << seed;
+    for (const SurfacePoint& p : way) EXPECT_EQ(support_of(mesh, p).kind, Support::Kind::vertex) << "seed " << seed;
+  }
+}
+
 TEST(SurfaceWalk, OnACylinderItLiesInThePlaneOfBothPointsAndTheirMeanNormal) {
   const TriangleMesh mesh = shapes::cylinder(90, 20, 10, 30);
   const SurfaceLocator locator(mesh);

@@ -79,12 +79,12 @@ void NormalsOptions::validate() const {
 }
 
 SmoothNormals::SmoothNormals(const TriangleMesh& mesh, const NormalsOptions& options)
-    : face_(face_normals(mesh)), corner_(mesh.n_halfedges(), Vec3::Zero()) {
+    : face_(face_normals(mesh)), crease_(mesh.n_halfedges(), 0), corner_(mesh.n_halfedges(), Vec3::Zero()) {
   options.validate();
-  const auto is_crease = [&](Index h) {
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
     const Index g = mesh.twin(h);
-    return g == no_index || angle_between(face_[h / 3], face_[g / 3]) > options.crease_angle;
-  };
+    crease_[h] = g == no_index || angle_between(face_[h / 3], face_[g / 3]) > options.crease_angle;
+  }
   std::vector<Index> fan;
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
     fan.clear();
@@ -92,7 +92,7 @@ SmoothNormals::SmoothNormals(const TriangleMesh& mesh, const NormalsOptions& opt
       fan.push_back(h);
     }
     // Start at a crease, if there is one, so that no group is broken by where the fan happens to begin.
-    std::rotate(fan.begin(), std::find_if(fan.begin(), fan.end(), is_crease), fan.end());
+    std::rotate(fan.begin(), std::find_if(fan.begin(), fan.end(), [&](Index h) { return is_crease(h); }), fan.end());
     for (std::size_t begin = 0; begin < fan.size();) {
       std::size_t end = begin;
       Vec3 sum = Vec3::Zero();

@@ -34,9 +34,12 @@ class SmoothNormals {
   /// Unit normal of a face. A face too thin to have one takes that of a neighbour, across its longest edge where it
   /// can; z where a whole component has none.
   const Vec3& of_face(Index face) const { return face_[face]; }
+  /// True where the face of the half-edge is not smoothed into the one beyond: at creases and on the boundary.
+  bool is_crease(Index halfedge) const { return crease_[halfedge] != 0; }
 
  private:
   std::vector<Vec3> face_;
+  std::vector<char> crease_;
   std::vector<Vec3> corner_;
 };
 
