@@ -7,18 +7,16 @@
 #include <random>
 #include <set>
 
-#include "contour/shapes.h"
+#include "contour/functions.h"
 #include "isopath/core/error.h"
 #include "isopath/field/vertex_field.h"
 
 namespace isopath {
 namespace {
 
-using testing::grid;
-using testing::PointDistance;
-using testing::random_values;
-using testing::sphere;
-using testing::square;
+using test::PointDistance;
+using test::random_values;
+using test::square;
 
 constexpr double pi = std::numbers::pi;
 
@@ -124,15 +122,7 @@ TEST(isolines, through_vertices_have_no_repeated_points) {
 }
 
 TEST(isolines, of_random_values_close_or_end_on_the_boundary_and_use_each_crossing_once) {
-  const std::vector<TriangleMesh> meshes = {square(5), sphere(4),
-                                            grid(
-                                                12, 6,
-                                                [](double u, double v) {
-                                                  return Vec3((3 + std::cos(2 * pi * v)) * std::cos(2 * pi * u),
-                                                              (3 + std::cos(2 * pi * v)) * std::sin(2 * pi * u),
-                                                              std::sin(2 * pi * v));
-                                                },
-                                                true, true)};
+  const std::vector<TriangleMesh> meshes = {square(5), test::icosphere(1, 1), test::torus(12, 6, 3, 1)};
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
@@ -162,7 +152,7 @@ TEST(isolines, of_random_values_close_or_end_on_the_boundary_and_use_each_crossi
         ASSERT_EQ((visits[{e, level}]), crossed ? 1 : 0);
       }
     }
-    if (::testing::Test::HasFailure()) return;
+    if (testing::Test::HasFailure()) return;
   }
 }
 

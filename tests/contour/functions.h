@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -11,67 +10,13 @@
 #include "isopath/core/geometry.h"
 #include "isopath/field/surface_function.h"
 #include "isopath/mesh/triangle_mesh.h"
+#include "support/test_meshes.h"
 
-namespace isopath::testing {
+namespace isopath::test {
 
-/// A grid of n × m cells over [0,1]², placed by `place`; either direction may wrap round. Normals towards +z for the
-/// identity. Cells' diagonals alternate.
-inline TriangleMesh grid(int n, int m, const std::function<Vec3(double, double)>& place, bool wrap_u = false,
-                         bool wrap_v = false) {
-  TriangleSoup soup;
-  const int columns = wrap_u ? n : n + 1;
-  const int rows = wrap_v ? m : m + 1;
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) soup.positions.push_back(place(double(i) / n, double(j) / m));
-  }
-  const auto at = [&](int i, int j) { return Index((j % rows) * columns + i % columns); };
-  for (int j = 0; j < m; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const Index a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-      if ((i + j) % 2 == 0) {
-        soup.triangles.push_back({a, b, c});
-        soup.triangles.push_back({a, c, d});
-      } else {
-        soup.triangles.push_back({a, b, d});
-        soup.triangles.push_back({b, c, d});
-      }
-    }
-  }
-  return TriangleMesh(std::move(soup));
-}
-
+/// The square [0, side]² in the plane z = 0, of n × n cells whose diagonals alternate.
 inline TriangleMesh square(int n, double side = 1) {
-  return grid(n, n, [side](double u, double v) { return Vec3(side * u, side * v, 0); });
-}
-
-/// An octahedron, each face divided into n² triangles, blown up to the unit sphere.
-inline TriangleMesh sphere(int n) {
-  TriangleSoup soup;
-  const std::array<Vec3, 6> tips{Vec3(1, 0, 0),  Vec3(0, 1, 0), Vec3(-1, 0, 0),
-                                 Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)};
-  const auto vertex = [&](const Vec3& p) {
-    const Vec3 q = p.normalized();
-    for (std::size_t i = 0; i < soup.positions.size(); ++i) {
-      if ((soup.positions[i] - q).norm() < 1e-9) return Index(i);
-    }
-    soup.positions.push_back(q);
-    return Index(soup.positions.size() - 1);
-  };
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 a = tips[k % 4], b = tips[(k + 1) % 4], c = tips[4 + k / 4];
-    const auto at = [&](int i, int j) { return vertex((n - i - j) * a + i * b + j * c); };
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; i + j < n; ++j) {
-        const auto add = [&](Index p, Index q, Index r) {
-          if (k < 4) soup.triangles.push_back({p, q, r});
-          if (k >= 4) soup.triangles.push_back({p, r, q});
-        };
-        add(at(i, j), at(i + 1, j), at(i, j + 1));
-        if (i + j + 1 < n) add(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-      }
-    }
-  }
-  return TriangleMesh(std::move(soup));
+  return test::planar_grid(n, n, side, side, {.diagonal = test::Diagonal::union_jack});
 }
 
 /// Distance in space to the nearest of some points in the plane of a flat mesh: its isolines are arcs of circles.
@@ -138,4 +83,4 @@ inline std::vector<double> random_values(const TriangleMesh& mesh, std::mt19937_
   return values;
 }
 
-}  // namespace isopath::testing
+}  // namespace isopath::test
