@@ -23,18 +23,56 @@ bool beats(const Window& window, const Window& old, double x) {
 
 }  // namespace
 
-EdgeWindows::EdgeWindows(std::vector<double> edge_length, std::vector<double> snap)
-    : head_(edge_length.size(), no_index), length_(std::move(edge_length)), snap_(std::move(snap)) {}
-
-Index EdgeWindows::allocate(const Window& window) {
+Index WindowPool::allocate(const Window& window) {
+  Index id = size_;
   if (!free_.empty()) {
-    const Index id = free_.back();
+    id = free_.back();
     free_.pop_back();
-    windows_[id] = window;
-    return id;
+  } else {
+    if (id >> block_bits == static_cast<Index>(blocks_.size()))
+      blocks_.push_back(std::make_unique<Window[]>(1 << block_bits));
+    ++size_;
   }
-  windows_.push_back(window);
-  return static_cast<Index>(windows_.size()) - 1;
+  (*this)[id] = window;
+  return id;
+}
+
+void WindowPool::reorder(std::vector<Index> order) {
+  const std::size_t kept = order.size();
+  order.insert(order.end(), free_.begin(), free_.end());  // now a permutation of all places: follow its cycles
+  for (Index start = 0; start < size_; ++start) {
+    if (order[start] == start) continue;
+    const Window saved = (*this)[start];
+    Index place = start;
+    while (order[place] != start) {
+      const Index source = order[place];
+      (*this)[place] = (*this)[source];
+      order[place] = place;
+      place = source;
+    }
+    (*this)[place] = saved;
+    order[place] = place;
+  }
+  size_ = static_cast<Index>(kept);
+  free_ = {};
+  blocks_.resize((kept + block_mask) >> block_bits);
+}
+
+EdgeWindows::EdgeWindows(std::vector<double> edge_length, std::vector<double> snap)
+    : lists_(edge_length.size()), length_(std::move(edge_length)), snap_(std::move(snap)) {}
+
+WindowPool EdgeWindows::take(std::vector<Index>& first) {
+  std::vector<Index> order;
+  order.reserve(pool_.size());
+  first.assign(1, 0);
+  first.reserve(lists_.size() + 1);
+  for (std::vector<Slot>& list : lists_) {
+    for (const Slot& slot : list) order.push_back(slot.id);
+    list = {};
+    first.push_back(static_cast<Index>(order.size()));
+  }
+  pool_.reorder(std::move(order));
+  return std::move(pool_);
 }
 
 void EdgeWindows::append(double begin, double end, Index id) {
@@ -46,8 +84,8 @@ void EdgeWindows::append(double begin, double end, Index id) {
   }
 }
 
-void EdgeWindows::divide_overlap(const Window& old, Index old_id, const Window& window, double low, double high,
-                                 double snap) {
+void EdgeWindows::divide_overlap(Index old_id, const Window& window, double low, double high, double snap) {
+  const Window& old = pool_[old_id];
   const Ties ties = ties_between(old, window, low + snap, high - snap);
   double from = low;
   for (int i = 0; i <= ties.count; ++i) {
@@ -59,36 +97,37 @@ void EdgeWindows::divide_overlap(const Window& old, Index old_id, const Window& 
 
 std::span<const Index> EdgeWindows::insert(Index edge, const Window& window) {
   inserted_.clear();
+  const double length = length_[edge];
   const double snap = snap_[edge];
   Window w = window;
   if (w.begin < snap) w.begin = 0;
-  if (w.end > length_[edge] - snap) w.end = length_[edge];
-  if (w.end - w.begin < snap && w.end - w.begin < length_[edge]) return inserted_;
+  if (w.end > length - snap) w.end = length;
+  if (w.end - w.begin < std::min(snap, length)) return inserted_;
 
-  Index before = no_index;
-  Index current = head_[edge];
-  while (current != no_index && windows_[current].end < w.begin - snap) {
-    before = current;
-    current = windows_[current].next;
-  }
+  std::vector<Slot>& list = lists_[edge];
+  const auto starts_after = [](double x, const Slot& slot) { return x < slot.begin; };
+  auto first =
+      static_cast<std::size_t>(std::upper_bound(list.begin(), list.end(), w.begin - snap, starts_after) - list.begin());
+  if (first > 0 && pool_[list[first - 1].id].end >= w.begin - snap) --first;
   parts_.clear();
-  displaced_.clear();
   double x = w.begin;
-  for (; current != no_index && windows_[current].begin <= w.end + snap; current = windows_[current].next) {
-    const Window& old = windows_[current];
-    displaced_.push_back(current);
-    if (old.begin > x) append(x, old.begin, newcomer);
-    if (old.begin < w.begin) append(old.begin, std::min(old.end, w.begin), current);
-    const double low = std::max(old.begin, w.begin);
-    const double high = std::min(old.end, w.end);
-    if (low < high) divide_overlap(old, current, w, low, high, snap);
-    if (old.end > w.end) append(std::max(old.begin, w.end), old.end, current);
-    x = std::max(x, old.end);
+  std::size_t last = first;
+  for (; last < list.size() && list[last].begin <= w.end + snap; ++last) {
+    const Index id = list[last].id;
+    const double old_begin = pool_[id].begin;
+    const double old_end = pool_[id].end;
+    if (old_begin > x) append(x, old_begin, newcomer);
+    if (old_begin < w.begin) append(old_begin, std::min(old_end, w.begin), id);
+    const double low = std::max(old_begin, w.begin);
+    const double high = std::min(old_end, w.end);
+    if (low < high) divide_overlap(id, w, low, high, snap);
+    if (old_end > w.end) append(std::max(old_begin, w.end), old_end, id);
+    x = std::max(x, old_end);
   }
   if (x < w.end) append(x, w.end, newcomer);
   if (std::none_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.id == newcomer; })) return inserted_;
   absorb_narrow_parts(snap);
-  write_back(edge, before, current, w);
+  write_back(list, first, last, w);
   return inserted_;
 }
 
@@ -118,36 +157,38 @@ void EdgeWindows::absorb_narrow_parts(double snap) {
   parts_.resize(kept);
 }
 
-void EdgeWindows::write_back(Index edge, Index before, Index after, const Window& window) {
-  // An old window keeps its id for its first part; further parts are copies.
-  const auto link = [&](Index id) {
-    (before == no_index ? head_[edge] : windows_[before].next) = id;
-    before = id;
-  };
-  std::vector<Index>& unused = displaced_;
-  std::size_t used_old = 0;
+void EdgeWindows::write_back(std::vector<Slot>& list, std::size_t first, std::size_t last, const Window& window) {
+  // An old window keeps its id for its first part; further parts are copies. Those without a part are freed.
+  slots_.clear();
+  std::size_t old = first;
   Index last_old = no_index;
   for (const Part& part : parts_) {
     Index id = part.id;
     if (id == newcomer) {
-      id = allocate(window);
-      windows_[id].pending = window.halfedge != no_index;
+      id = pool_.allocate(window);
+      pool_[id].pending = window.halfedge != no_index;
       inserted_.push_back(id);
     } else if (id == last_old) {
-      id = allocate(Window(windows_[id]));
-      if (windows_[id].pending) inserted_.push_back(id);
+      id = pool_.allocate(Window(pool_[id]));
+      if (pool_[id].pending) inserted_.push_back(id);
     } else {
       last_old = id;
-      // parts keep the order of the list, so the unused ids are those skipped over
-      while (unused[used_old] != id) free_.push_back(unused[used_old++]);
-      ++used_old;
+      while (list[old].id != id) pool_.release(list[old++].id);
+      ++old;
     }
-    windows_[id].begin = part.begin;
-    windows_[id].end = part.end;
-    link(id);
+    pool_[id].begin = part.begin;
+    pool_[id].end = part.end;
+    slots_.push_back({part.begin, id});
   }
-  for (; used_old < unused.size(); ++used_old) free_.push_back(unused[used_old]);
-  (before == no_index ? head_[edge] : windows_[before].next) = after;
+  for (; old < last; ++old) pool_.release(list[old].id);
+
+  const std::size_t common = std::min(last - first, slots_.size());
+  std::copy_n(slots_.begin(), common, list.begin() + first);
+  if (slots_.size() > common) {
+    list.insert(list.begin() + first + common, slots_.begin() + common, slots_.end());
+  } else {
+    list.erase(list.begin() + first + common, list.begin() + last);
+  }
 }
 
 }  // namespace isopath

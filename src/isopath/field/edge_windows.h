@@ -1,11 +1,32 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "isopath/field/window.h"
 
 namespace isopath {
+
+/// Windows in blocks: ids stay valid, nothing is copied when it grows, freed ids are used again.
+class WindowPool {
+ public:
+  Index allocate(const Window& window);
+  void release(Index id) { free_.push_back(id); }
+  /// Puts window `order[k]` at place k, for all k, and forgets the others.
+  void reorder(std::vector<Index> order);
+
+  const Window& operator[](Index id) const { return blocks_[id >> block_bits][id & block_mask]; }
+  Window& operator[](Index id) { return blocks_[id >> block_bits][id & block_mask]; }
+  std::size_t size() const { return static_cast<std::size_t>(size_) - free_.size(); }
+
+ private:
+  static constexpr int block_bits = 14;
+  static constexpr Index block_mask = (1 << block_bits) - 1;
+  std::vector<std::unique_ptr<Window[]>> blocks_;
+  std::vector<Index> free_;
+  Index size_ = 0;
+};
 
 /// The windows of all edges: on each a list, sorted, without overlap, that holds the lower envelope of all fronts that
 /// came by.
@@ -16,15 +37,21 @@ class EdgeWindows {
   EdgeWindows(std::vector<double> edge_length, std::vector<double> snap);
 
   /// Puts the parts of a window that are nearer than what the edge holds into the edge's list, and trims or removes
-  /// what they beat. Returns the ids of the pieces put in; valid until the next call.
+  /// what they beat. Returns the ids of the pieces to propagate or look at; valid until the next call.
   std::span<const Index> insert(Index edge, const Window& window);
 
-  Index first(Index edge) const { return head_[edge]; }
-  const Window& operator[](Index id) const { return windows_[id]; }
-  Window& operator[](Index id) { return windows_[id]; }
-  std::size_t live() const { return windows_.size() - free_.size(); }
+  const Window& operator[](Index id) const { return pool_[id]; }
+  Window& operator[](Index id) { return pool_[id]; }
+
+  /// Hands over all windows, side by side edge after edge; edge e has those from first[e] up to first[e + 1]. Leaves
+  /// nothing behind.
+  WindowPool take(std::vector<Index>& first);
 
  private:
+  struct Slot {
+    double begin;  ///< of the window, for the search
+    Index id;
+  };
   struct Part {
     double begin;
     double end;
@@ -32,20 +59,18 @@ class EdgeWindows {
   };
   static constexpr Index newcomer = -2;
 
-  Index allocate(const Window& window);
   void append(double begin, double end, Index id);
-  void divide_overlap(const Window& old, Index old_id, const Window& window, double low, double high, double snap);
+  void divide_overlap(Index old_id, const Window& window, double low, double high, double snap);
   void absorb_narrow_parts(double snap);
-  void write_back(Index edge, Index before, Index after, const Window& window);
+  void write_back(std::vector<Slot>& list, std::size_t first, std::size_t last, const Window& window);
 
-  std::vector<Window> windows_;
-  std::vector<Index> free_;
-  std::vector<Index> head_;
+  WindowPool pool_;
+  std::vector<std::vector<Slot>> lists_;
   std::vector<double> length_;
   std::vector<double> snap_;
-  std::vector<Part> parts_;       // scratch of insert
-  std::vector<Index> displaced_;  // scratch of insert
-  std::vector<Index> inserted_;   // result of insert
+  std::vector<Part> parts_;      // scratch of insert
+  std::vector<Slot> slots_;      // scratch of insert
+  std::vector<Index> inserted_;  // result of insert
 };
 
 }  // namespace isopath

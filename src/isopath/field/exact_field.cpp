@@ -52,17 +52,6 @@ void index_sources(ExactFieldData& data) {
   for (Index f = 0; f < data.mesh.n_faces(); ++f) data.first_source[f + 1] += data.first_source[f];
 }
 
-/// Moves the windows of each edge side by side.
-void gather_windows(EdgeWindows& lists, ExactFieldData& data) {
-  data.windows.reserve(lists.live());
-  data.first_window.reserve(data.mesh.n_edges() + 1);
-  data.first_window.push_back(0);
-  for (Index e = 0; e < data.mesh.n_edges(); ++e) {
-    for (Index id = lists.first(e); id != no_index; id = lists[id].next) data.windows.push_back(lists[id]);
-    data.first_window.push_back(data.windows.size());
-  }
-}
-
 Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {
   const auto& [a, b, c] = mesh.triangle(face);
   const Vec3 x = (mesh.position(b) - mesh.position(a)).stableNormalized();
@@ -88,7 +77,7 @@ ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& source
   data->root = std::move(propagation.vertex_roots());
   data->emitted = std::move(propagation.emitted());
   data->propagated = propagation.propagated();
-  gather_windows(propagation.windows(), *data);
+  data->windows = propagation.windows().take(data->first_window);
   return ExactField(std::move(data));
 }
 
@@ -125,17 +114,18 @@ SurfaceFunction::Slope ExactField::slope(const SurfacePoint& point) const {
 }
 
 void ExactField::edge_crossings(Index edge, double level, std::vector<double>& parameters) const {
-  const auto windows = data_->windows_of(edge);
-  if (windows.empty()) return;
+  const Index first = data_->first_window[edge];
+  const Index past = data_->first_window[edge + 1];
   const Index h = data_->mesh.halfedge_of(edge);
   const double length = data_->geometry.length(h);
   bool above = data_->distance[data_->mesh.from(h)] >= level;
   const bool ends_above = data_->distance[data_->mesh.to(h)] >= level;
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    const Window& w = windows[i];
-    const bool last = i + 1 == windows.size();
+  for (Index i = first; i < past; ++i) {
+    const Window& w = data_->windows[i];
     const bool above_after =
-        last ? ends_above : std::min(w.distance(w.end), windows[i + 1].distance(windows[i + 1].begin)) >= level;
+        i + 1 == past
+            ? ends_above
+            : std::min(w.distance(w.end), data_->windows[i + 1].distance(data_->windows[i + 1].begin)) >= level;
     const double r = level - w.offset;
     const auto add = [&](double x) { parameters.push_back(std::clamp(x, w.begin, w.end) / length); };
     if (above != above_after) {
@@ -172,13 +162,13 @@ bool ExactField::monotone_in_face(Index face) const {
     const Index edge = data_->mesh.edge_of(h);
     const Vec2 axis = (head - tail).normalized();
     const double sign = data_->mesh.halfedge_of(edge) == h ? 1 : -1;
-    for (const Window& w : data_->windows_of(edge)) {
-      if (w.halfedge != h) continue;
+    data_->for_each_window(edge, [&](const Window& w) {
+      if (w.halfedge != h) return;
       for (const double x : {w.begin, w.end}) {
         const Vec2 d = sign * w.direction(x);
         directions.push_back(axis * d.x() + Vec2(-axis.y(), axis.x()) * d.y());
       }
-    }
+    });
   }
   Vec2 mean = Vec2::Zero();
   for (const Vec2& d : directions) mean += d;

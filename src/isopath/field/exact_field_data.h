@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "isopath/field/edge_windows.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/source.h"
-#include "isopath/field/window.h"
 
 namespace isopath {
 
@@ -15,8 +15,10 @@ class ExactFieldData {
  public:
   ExactFieldData(const TriangleMesh& m, const SourceSet& s) : mesh(m), geometry(m), sources(s) {}
 
-  std::span<const Window> windows_of(Index edge) const {
-    return {windows.data() + first_window[edge], windows.data() + first_window[edge + 1]};
+  /// Ids of an edge's windows: from first_window[edge] up to first_window[edge + 1].
+  template <class Visit>
+  void for_each_window(Index edge, Visit&& visit) const {
+    for (Index id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
   }
   std::span<const Index> sources_in(Index face) const {
     return {face_sources.data() + first_source[face], face_sources.data() + first_source[face + 1]};
@@ -25,12 +27,12 @@ class ExactFieldData {
   const TriangleMesh& mesh;
   IntrinsicGeometry geometry;
   SourceSet sources;
-  std::vector<Window> windows;
-  std::vector<std::size_t> first_window;  ///< per edge, and one past the last
-  std::vector<double> distance;           ///< per vertex
-  std::vector<Index> root;                ///< per vertex
-  std::vector<char> emitted;              ///< per vertex: source or pseudo-source
-  std::vector<Index> face_sources;        ///< element ids, face by face
+  WindowPool windows;
+  std::vector<Index> first_window;  ///< per edge, and one past the last
+  std::vector<double> distance;     ///< per vertex
+  std::vector<Index> root;          ///< per vertex
+  std::vector<char> emitted;        ///< per vertex: source or pseudo-source
+  std::vector<Index> face_sources;  ///< element ids, face by face
   std::vector<std::size_t> first_source;
   std::size_t propagated = 0;
 };

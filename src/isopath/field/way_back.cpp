@@ -75,14 +75,14 @@ WayBack best_way_back(const ExactFieldData& data, Index face, const Vec3& baryce
     const Index edge = data.mesh.edge_of(h);
     const bool canonical = data.mesh.halfedge_of(edge) == h;
     const Vec2 p = geometry.in_frame(h, barycentric);
-    for (const Window& stored : data.windows_of(edge)) {
-      if (stored.halfedge != h) continue;
+    data.for_each_window(edge, [&](const Window& stored) {
+      if (stored.halfedge != h) return;
       const Window w = canonical ? stored : stored.flipped(geometry.length(h));
       const Crossing crossing = cross_window(w, p);
       if (crossing.distance < best.distance) {
         best = {crossing.distance, w.root, WayBack::Stop::edge, h, crossing.x, crossing.towards};
       }
-    }
+    });
   }
   if (best.stop == WayBack::Stop::edge && best.at != 3 * face) {
     // into the frame of half-edge 3·face
