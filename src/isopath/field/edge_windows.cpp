@@ -86,6 +86,10 @@ void EdgeWindows::append(double begin, double end, Index id) {
 
 void EdgeWindows::divide_overlap(Index old_id, const Window& window, double low, double high, double snap) {
   const Window& old = pool_[old_id];
+  // Both distances have slope at most 1: far enough apart at the ends, they do not meet in between.
+  const double apart = 0.5 * (window.distance(low) - old.distance(low) + window.distance(high) - old.distance(high));
+  if (std::abs(apart) > (high - low) + filler_margin * old.distance(low))
+    return append(low, high, apart < 0 ? newcomer : old_id);
   const Ties ties = ties_between(old, window, low + snap, high - snap);
   double from = low;
   for (int i = 0; i <= ties.count; ++i) {

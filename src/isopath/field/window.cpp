@@ -51,7 +51,7 @@ int candidates(const Window& a, const Window& b, double origin, double roots[2])
 
 double slope_at(const Window& w, double x) {
   if (w.kind == Window::Kind::line) return w.source.x();
-  const double r = std::hypot(x - w.source.x(), w.source.y());
+  const double r = w.radius(x);
   return r > 0 ? (x - w.source.x()) / r : 0;
 }
 

@@ -28,8 +28,12 @@ struct Window {
   bool filler = false;
   bool pending = false;  ///< still to be propagated
 
-  double distance(double x) const {
-    return kind == Kind::point ? offset + std::hypot(x - source.x(), source.y()) : offset + source.x() * x;
+  double distance(double x) const { return kind == Kind::point ? offset + radius(x) : offset + source.x() * x; }
+  /// Distance of x from a point window's source. Coordinates are limited so that squares stay finite (see
+  /// TriangleMesh).
+  double radius(double x) const {
+    const double dx = x - source.x();
+    return std::sqrt(dx * dx + source.y() * source.y());
   }
   double min_distance() const {
     if (kind == Kind::point && source.x() > begin && source.x() < end) return offset + std::abs(source.y());
