@@ -1,40 +1,11 @@
 #include "isopath/field/source.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
-namespace {
-
-/// A face that holds both points, or none.
-Index common_face(const TriangleMesh& mesh, const SurfacePoint& a, const SurfacePoint& b) {
-  const auto faces_of = [&](const SurfacePoint& p) {
-    const Support support = support_of(mesh, p);
-    std::vector<Index> faces{p.face};
-    if (support.kind == Support::Kind::edge && mesh.twin(support.index) != no_index) {
-      faces.push_back(TriangleMesh::face_of(mesh.twin(support.index)));
-    } else if (support.kind == Support::Kind::vertex) {
-      const Index start = mesh.outgoing(support.index);
-      for (Index h = start; h != no_index;) {
-        faces.push_back(TriangleMesh::face_of(h));
-        h = mesh.next_outgoing(h);
-        if (h == start) break;
-      }
-    }
-    return faces;
-  };
-  const auto of_b = faces_of(b);
-  for (const Index f : faces_of(a)) {
-    if (std::find(of_b.begin(), of_b.end(), f) != of_b.end()) return f;
-  }
-  return no_index;
-}
-
-}  // namespace
-
 void SourceSet::add_vertex(const TriangleMesh& mesh, Index vertex) { add_point(point_at_vertex(mesh, vertex)); }
 
 void SourceSet::add_point(const SurfacePoint& point) { elements_.push_back({.a = point, .b = point}); }
