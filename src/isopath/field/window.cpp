@@ -5,9 +5,9 @@
 namespace isopath {
 namespace {
 
-/// Real roots of a x² + 2 b x + c, without cancellation.
-int solve_quadratic(double a, double b, double c, double roots[2]) {
-  const double discriminant = b * b - a * c;
+/// Real roots of a x² + 2 b x + c, without cancellation. The caller knows b² - a c in a form that does not cancel:
+/// fronts that are almost equally old have almost a double root, which must not be lost to rounding.
+int solve_quadratic(double a, double b, double c, double discriminant, double roots[2]) {
   if (!(discriminant >= 0)) return 0;
   const double q = -(b + std::copysign(std::sqrt(discriminant), b));
   int count = 0;
@@ -38,15 +38,20 @@ int candidates(const Window& a, const Window& b, double origin, double roots[2])
       return 1;
     }
     const double d4 = 4 * delta * delta;
-    return solve_quadratic(alpha * alpha - d4, alpha * gamma + d4 * s2.x(), gamma * gamma - d4 * s2.squaredNorm(),
-                           roots);
+    const double a2 = (alpha - 2 * delta) * (alpha + 2 * delta);
+    const double at_s2 = alpha * s2.x() + gamma;
+    return solve_quadratic(a2, alpha * gamma + d4 * s2.x(), gamma * gamma - d4 * s2.squaredNorm(),
+                           d4 * (at_s2 * at_s2 + a2 * s2.y() * s2.y()), roots);
   }
   const Window& line = a.kind == Kind::line ? a : b;
   const Window& point = a.kind == Kind::line ? b : a;
   const Vec2 s(point.source.x() - origin, point.source.y());
   const double c = line.distance(origin) - point.offset;
   const double u = line.source.x();
-  return solve_quadratic(1 - u * u, -(s.x() + c * u), s.squaredNorm() - c * c, roots);
+  const double v = line.source.y();
+  const double at_s = c + u * s.x();
+  return solve_quadratic(v * v, -(s.x() + c * u), s.squaredNorm() - c * c, (at_s - v * s.y()) * (at_s + v * s.y()),
+                         roots);
 }
 
 double slope_at(const Window& w, double x) {

@@ -46,7 +46,8 @@ struct Window {
   Window flipped(double length) const;
 };
 
-/// Where two windows of one edge are equally far: at most two points in (low, high), ascending.
+/// At most two points in (low, high), ascending, between which one of two windows of an edge is the nearer. One of them
+/// may be a root that squaring brought in, where they are not equally far: both its sides then have the same winner.
 struct Ties {
   int count = 0;
   double x[2] = {0, 0};

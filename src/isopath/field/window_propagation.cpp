@@ -102,6 +102,7 @@ void WindowPropagation::insert_leaving(Index halfedge, Window window) {
 }
 
 void WindowPropagation::offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival) {
+  distance = std::max(distance, 0.0);  // a straight front may round to just below its own segment
   if (distance >= distance_[vertex] || settled_[vertex]) return;
   distance_[vertex] = distance;
   root_[vertex] = root;
