@@ -79,15 +79,19 @@ void WindowPropagation::insert(Index edge, const Window& canonical) {
     const Window& window = windows_[id];
     if (window.pending) queue_.push({window.min_distance(), id});
     const Index h = mesh_.halfedge_of(edge);
-    // the way back to the source, turned into the frame whose x axis leaves the vertex
+    // The way back to the source, turned into the frame whose x axis leaves the vertex. It lies on the side that the
+    // front came from: where it goes straight back along the line of the edge, the sign of y knows nothing.
+    const bool from_face_of_h = window.halfedge != h;
+    const auto turn_of = [](const Vec2& back, bool left) {
+      const double turn = std::atan2(std::abs(back.y()), back.x());
+      return left ? turn : -turn;
+    };
     if (window.begin == 0) {
-      const Vec2 back = -window.direction(0);
-      offer_vertex(mesh_.from(h), window.distance(0), window.root, {h, std::atan2(back.y(), back.x())});
+      offer_vertex(mesh_.from(h), window.distance(0), window.root, {h, turn_of(-window.direction(0), from_face_of_h)});
     }
     if (window.end == length) {
-      const Vec2 back = window.direction(length);
       const Index outgoing = mesh_.twin(h) != no_index ? mesh_.twin(h) : TriangleMesh::next(h);
-      double turn = std::atan2(back.y(), back.x());
+      double turn = turn_of(window.direction(length), !from_face_of_h);
       // on the boundary the edge is the last of the fan: measure from the half-edge before it
       if (mesh_.twin(h) == no_index) turn += geometry_.angle_at_tail(outgoing);
       offer_vertex(mesh_.to(h), window.distance(length), window.root, {outgoing, turn});
