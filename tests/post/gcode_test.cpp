@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
+#include "isopath/post/follow_axis.h"
 #include "post/test_paths.h"
 
 namespace isopath {
@@ -49,8 +50,13 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
+// A path that a 5-axis program needs no more points for.
+ToolPath five_axis_path() {
+  return follow_axis(test::full_path(test::wavy_zigzag()), {}, GcodeOptions().axis_tolerance);
+}
+
 TEST(Gcode, FiveAxisMovesTakeTheTimeOfThePath) {
-  const ToolPath path = test::full_path(test::wavy_zigzag());
+  const ToolPath path = five_axis_path();
   const std::vector<Block> moves = moves_of(gcode(path, {.rotary_deg_per_min = 1e9}));
   ASSERT_EQ(moves.size(), path.points.size());
   for (std::size_t i = 1; i < moves.size(); ++i) {
@@ -86,7 +92,7 @@ TEST(Gcode, ThreeAxisMovesHaveTheFeedOfThePath) {
 }
 
 TEST(Gcode, LiftsAreRapidUntilTheyComeDown) {
-  const ToolPath path = test::full_path(test::wavy_zigzag());
+  const ToolPath path = five_axis_path();
   const std::vector<Block> moves = moves_of(gcode(path));
   for (std::size_t i = 0; i + 1 < moves.size(); ++i) {
     const bool lift = path.points[i].kind == MoveKind::lift;
@@ -96,7 +102,7 @@ TEST(Gcode, LiftsAreRapidUntilTheyComeDown) {
 }
 
 TEST(Gcode, SprayIsOnOnTheSurfaceOnly) {
-  const ToolPath path = test::full_path(test::wavy_zigzag());
+  const ToolPath path = five_axis_path();
   const std::string program = gcode(path, {.process = Process::spray});
   EXPECT_EQ(count(program, "M3"), 0U);
   EXPECT_EQ(count(program, "\nM7"), 3U);
@@ -140,8 +146,9 @@ TEST(Gcode, RefusesATiltedAxisOnThreeAxes) {
 TEST(Gcode, RefusesBrokenOptions) {
   const ToolPath path = test::full_path(test::wavy_zigzag());
   for (const GcodeOptions& options :
-       {GcodeOptions{.spindle_rpm = 0}, GcodeOptions{.path_tolerance = -1}, GcodeOptions{.retract = 0},
-        GcodeOptions{.rotary_deg_per_min = 0}, GcodeOptions{.limits = {.a_min = 10, .a_max = 0}}}) {
+       {GcodeOptions{.spindle_rpm = 0}, GcodeOptions{.path_tolerance = -1}, GcodeOptions{.axis_tolerance = 0},
+        GcodeOptions{.retract = 0}, GcodeOptions{.rotary_deg_per_min = 0},
+        GcodeOptions{.limits = {.a_min = 10, .a_max = 0}}}) {
     EXPECT_THROW(gcode(path, options), Error);
   }
 }

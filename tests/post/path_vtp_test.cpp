@@ -50,6 +50,15 @@ TEST(PathVtp, LinesOfOneKindAndPieceCoverEveryMoveOnce) {
   EXPECT_EQ(next, path.points.size());
 }
 
+TEST(PathVtp, ALineEndsWithItsPiece) {
+  ToolPath path;
+  for (const Index piece : {0, 0, 1, 1}) {
+    path.points.emplace_back();
+    path.points.back().piece = piece;
+  }
+  EXPECT_EQ(numbers(path_vtp(path), "CellData", "piece"), std::vector<double>({0, 1}));
+}
+
 TEST(PathVtp, ArraysCarryThePath) {
   const ToolPath path = test::full_path(test::cylinder_helix());
   const std::string text = path_vtp(path);

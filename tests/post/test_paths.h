@@ -72,6 +72,17 @@ inline ImpactCurve wavy_zigzag() {
   return curve;
 }
 
+/// Two moves over the top of a cylinder that lean a little along it: the axis passes near +Z, where few points say
+/// little about the angles of a table.
+inline ImpactCurve near_pole() {
+  ImpactCurve curve;
+  for (const double angle : {-0.5, -0.3, 0.3, 0.4}) {
+    const Vec3 normal(0.1, std::sin(angle), std::cos(angle));
+    add(curve, 30 * normal, normal, MoveKind::cover, 0);
+  }
+  return curve;
+}
+
 /// Every point of the curve, none left out.
 inline ToolPath full_path(const ImpactCurve& curve, AxisMode mode = AxisMode::surface_normal) {
   ToolOptions options;

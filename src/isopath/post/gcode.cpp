@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
+#include "isopath/post/follow_axis.h"
 
 namespace isopath {
 namespace {
@@ -188,6 +189,7 @@ class Writer {
 void GcodeOptions::validate() const {
   require_positive("spindle_rpm", spindle_rpm);
   require_positive("path_tolerance", path_tolerance);
+  require_positive("axis_tolerance", axis_tolerance);
   require_positive("retract", retract);
   require_positive("rotary_deg_per_min", rotary_deg_per_min);
   if (!(limits.a_min < limits.a_max)) {
@@ -200,7 +202,11 @@ void GcodeOptions::validate() const {
 std::string gcode(const ToolPath& path, const GcodeOptions& options) {
   options.validate();
   if (path.points.empty()) throw Error(ErrorCode::no_plan, "the tool path is empty: there is nothing to program");
-  if (options.axes == GcodeAxes::xyz) check_straight(path);
+  if (options.axes == GcodeAxes::xyzac) {
+    const ToolPath followed = follow_axis(path, options.limits, options.axis_tolerance);
+    return Writer(followed, options).program();
+  }
+  check_straight(path);
   return Writer(path, options).program();
 }
 

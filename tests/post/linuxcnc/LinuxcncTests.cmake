@@ -13,7 +13,7 @@ isopath_use_pch(write_programs)
 set(programs ${CMAKE_CURRENT_BINARY_DIR}/programs)
 add_test(NAME linuxcnc.write_programs COMMAND write_programs ${programs})
 set_tests_properties(linuxcnc.write_programs PROPERTIES FIXTURES_SETUP linuxcnc_programs)
-foreach(name zigzag_3_axes zigzag_5_axes helix_5_axes spiral_5_axes)
+foreach(name zigzag_3_axes zigzag_5_axes helix_5_axes near_pole_5_axes spiral_5_axes)
   add_test(NAME linuxcnc.${name} COMMAND Python3::Interpreter ${CMAKE_SOURCE_DIR}/tools/check_gcode.py ${programs}/${name}.ngc
                                          ${programs}/${name}.csv --cache ${CMAKE_BINARY_DIR}/../linuxcnc)
   set_tests_properties(linuxcnc.${name} PROPERTIES FIXTURES_REQUIRED linuxcnc_programs SKIP_RETURN_CODE 77 TIMEOUT 600

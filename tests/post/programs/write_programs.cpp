@@ -25,6 +25,7 @@ void write_all(const std::filesystem::path& folder) {
   write(folder, "zigzag_3_axes", straight, {.axes = GcodeAxes::xyz});
   write(folder, "zigzag_5_axes", test::full_path(test::wavy_zigzag()), {});
   write(folder, "helix_5_axes", test::full_path(test::cylinder_helix()), {.process = Process::spray});
+  write(folder, "near_pole_5_axes", test::full_path(test::near_pole()), {});
   write(folder, "spiral_5_axes", test::full_path(test::sphere_spiral()), {});
 }
 
