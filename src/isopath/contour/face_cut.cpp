@@ -56,8 +56,12 @@ double FaceCutter::value_at(const Vec3& barycentric) const {
   return function_.value({face_, barycentric}) - level_value_;
 }
 
+/// The value for signs on inner edges: pushed up by less than the tolerance but more than its rounding, so that an edge
+/// on the level set is above it as a whole.
+double FaceCutter::biased_at(const Vec3& barycentric) const { return value_at(barycentric) + 0.25 * value_tolerance_; }
+
 FaceCutter::Corner FaceCutter::corner_at(const Vec3& barycentric, bool above) const {
-  const double g = value_at(barycentric);
+  const double g = biased_at(barycentric);
   return {barycentric, above ? std::max(g, 0.0) : std::min(g, -std::numeric_limits<double>::min()), above};
 }
 

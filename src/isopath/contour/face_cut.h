@@ -48,6 +48,7 @@ class FaceCutter {
   using Sides = std::array<Side, 3>;
 
   double value_at(const Vec3& barycentric) const;
+  double biased_at(const Vec3& barycentric) const;
   Vec2 plane(const Vec3& barycentric) const;
   Corner corner_at(const Vec3& barycentric, bool above) const;
   Side find_crossings(const Corner& a, const Corner& b, int depth);

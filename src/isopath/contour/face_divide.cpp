@@ -113,7 +113,9 @@ void FaceCutter::find_between(const Corner& a, const Corner& b, std::array<doubl
     return;
   }
   const double middle = (t[0] + t[1]) / 2;
-  const double g_middle = value_at(mix(a.barycentric, b.barycentric, middle));
+  const double g_middle = biased_at(mix(a.barycentric, b.barycentric, middle));
+  // A level set that runs along the edge is above it by the bias.
+  if (!differ && std::max({std::abs(g[0]), std::abs(g_middle), std::abs(g[1])}) <= value_tolerance_) return;
   find_between(a, b, {t[0], middle}, {g[0], g_middle}, depth + 1, out);
   find_between(a, b, {middle, t[1]}, {g_middle, g[1]}, depth + 1, out);
 }
