@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/read_mesh.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
@@ -148,6 +149,12 @@ TEST_F(StepReader, ABoxIsClosedAndExact) {
 TEST_F(StepReader, UnitsBecomeMillimetres) {
   const TriangleMesh mesh(read_step(write("box_m.stp", box_file({0.01, 0.02, 0.03}, true))));
   EXPECT_NEAR(mesh.area(), 2 * (200 + 300 + 600), 1e-9);
+}
+
+TEST_F(StepReader, ReadMeshKnowsThem) {
+  const MeshFile file = read_mesh(write("by_name.step", box_file({10, 20, 30}, false)));
+  EXPECT_EQ(file.soup.triangles.size(), 12u);
+  EXPECT_EQ(file.vertex_of_file_vertex.size(), 8u);
 }
 
 TEST_F(StepReader, NonsenseIsRefusedInSilence) {

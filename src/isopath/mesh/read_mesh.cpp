@@ -10,6 +10,7 @@
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
 #include "isopath/mesh/mesh_formats.h"
+#include "isopath/mesh/step_reader.h"
 #include "isopath/mesh/text_scanner.h"
 #include "isopath/mesh/weld.h"
 
@@ -125,6 +126,7 @@ MeshFile weld(RawMesh&& raw, bool merge) {
 }  // namespace
 
 void ReadOptions::validate() const {
+  step.validate();
   if (!(std::isfinite(unit_mm) && unit_mm > 0)) {
     throw Error(ErrorCode::bad_usage, "the length of the file's unit must be positive",
                 {.element = "unit_mm",
@@ -171,6 +173,14 @@ MeshFile read_mesh_content(std::string_view content, const std::filesystem::path
 }
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options, Progress& progress) {
+  if (is_step_file_name(path) && can_read_step()) {
+    options.validate();
+    MeshFile file;
+    file.soup = read_step(path, options.step, progress);
+    file.vertex_of_file_vertex.resize(file.soup.positions.size());
+    std::iota(file.vertex_of_file_vertex.begin(), file.vertex_of_file_vertex.end(), 0);
+    return file;
+  }
   return read_mesh_content(read_whole_file(path), path, options, progress);
 }
 
