@@ -14,6 +14,8 @@ export class PathLines {
   constructor(path) {
     this.path = path;
     this.now = { value: allAhead };
+    // Lines face the screen while the surface slopes, so they come forward along the line of sight, by this many mm.
+    this.forward = { value: 0 };
     this.dim = { value: new Color('#d9d7d1') };
     this.group = new Group();
     this.covers = new Strand(path, COVER);
@@ -40,7 +42,7 @@ export class PathLines {
 
   line(strand, parameters, order) {
     const material = new LineMaterial(parameters);
-    material.onBeforeCompile = (shader) => dimAhead(shader, this.now, this.dim);
+    material.onBeforeCompile = (shader) => adapt(shader, { now: this.now, dim: this.dim, forward: this.forward });
     const line = new LineSegments2(strand.geometry, material);
     line.renderOrder = order;
     this.group.add(line);
@@ -63,6 +65,7 @@ export class PathLines {
       lines.casing.material.linewidth = width + Math.min(1.6, 0.55 * width);
       lines.casing.visible = width > 1.2;
     }
+    this.forward.value = 6 * lengthOfPixel;
     if (this.liftLine) {
       this.liftLine.material.dashSize = 5 * lengthOfPixel;
       this.liftLine.material.gapSize = 4 * lengthOfPixel;
@@ -125,10 +128,13 @@ export function feedRange(path) {
   return finiteRange(path.feeds.filter((feed, i) => i > 0 && path.kinds[i] === COVER));
 }
 
-function dimAhead(shader, now, dim) {
-  Object.assign(shader.uniforms, { now, dim });
+/** Teaches three's line shader to dim what lies ahead and to come forward. */
+function adapt(shader, uniforms) {
+  Object.assign(shader.uniforms, uniforms);
+  const come = (end) => `${end}.xyz *= max(0.5, 1.0 - forward / length(${end}.xyz));`;
   shader.vertexShader = shader.vertexShader
-    .replace('void main() {', 'attribute vec2 instanceClock;\nvarying float vClock;\nvoid main() {\nvClock = position.y < 0.5 ? instanceClock.x : instanceClock.y;');
+    .replace('void main() {', 'attribute vec2 instanceClock;\nuniform float forward;\nvarying float vClock;\nvoid main() {\nvClock = position.y < 0.5 ? instanceClock.x : instanceClock.y;')
+    .replace('vec4 end = modelViewMatrix * vec4( instanceEnd, 1.0 );', `$&\n${come('start')}\n${come('end')}`);
   shader.fragmentShader = shader.fragmentShader
     .replace('void main() {', 'uniform float now;\nuniform vec3 dim;\nvarying float vClock;\nvoid main() {')
     .replace('#include <color_fragment>', '#include <color_fragment>\nif (vClock > now) diffuseColor.rgb = mix(diffuseColor.rgb, dim, 0.78);');

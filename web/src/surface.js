@@ -28,8 +28,7 @@ export class Surface {
     this.uniforms = { table: { value: this.table }, coloured: { value: 0 }, blank: { value: new Color(palette.noValue) } };
     const material = new MeshStandardMaterial({
       color: palette.plain, roughness: 0.62, metalness: 0, side: DoubleSide,
-      // Lines face the screen while the surface slopes: it must give way over half the width of a line.
-      polygonOffset: true, polygonOffsetFactor: 5, polygonOffsetUnits: 4,
+      polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 4,
     });
     material.onBeforeCompile = (shader) => this.colourByTable(shader);
 

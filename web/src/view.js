@@ -43,7 +43,7 @@ export class View {
     this.camera.add(key, rim, key.target, rim.target);
     key.target.position.set(0, 0, -1);
     rim.target.position.set(0, 0, -1);
-    const sky = new HemisphereLight('#ffffff', '#8f8d8a', 0.85);
+    const sky = new HemisphereLight('#ffffff', '#a3a09b', 0.85);
     sky.position.set(0, 0, 1);
     this.scene.add(sky);
   }
