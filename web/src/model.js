@@ -29,7 +29,7 @@ export class Model {
     const size = view.radius;
     const spacing = Math.min(path.coverLength > 0 ? area / path.coverLength : Infinity, 0.2 * size);
     this.lines = new PathLines(path);
-    this.arrows = arrows(path, Math.min(160, Math.max(12, (0.08 * path.coverLength) / spacing)), 0.55 * spacing);
+    this.arrows = arrows(path, Math.min(160, Math.max(12, (0.08 * path.coverLength) / spacing)), 0.55 * spacing, this.lines.forward);
     this.ticks = axisTicks(path, Math.min(1200, path.coverLength / spacing), Math.max(0.03 * size, 0.8 * spacing));
     this.start = sign('start');
     this.end = sign('end');

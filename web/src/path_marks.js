@@ -5,13 +5,23 @@ import {
 } from 'three';
 import { stations } from './path.js';
 
-/** Flat arrowheads on the covering moves, about `count` of them, `size` mm long. */
-export function arrows(path, count, size) {
+/** Flat arrowheads on the covering moves, about `count` of them, `size` mm long. They stay in front of the lines, which
+ * come `forward` (a shared uniform) themselves. */
+export function arrows(path, count, size, forward) {
   const places = stations(path, path.lengths[path.n - 1] / count);
   const geometry = new BufferGeometry();
   // A swept arrowhead in the plane of x (ahead) and y, z up.
   geometry.setAttribute('position', new Float32BufferAttribute([0.6, 0, 0, -0.4, 0.42, 0, -0.18, 0, 0, 0.6, 0, 0, -0.18, 0, 0, -0.4, -0.42, 0], 3));
-  const mesh = new InstancedMesh(geometry, new MeshBasicMaterial({ color: '#17151f', side: DoubleSide }), places.length);
+  const material = new MeshBasicMaterial({ color: '#17151f', side: DoubleSide });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.forward = forward;
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nuniform float forward;')
+      .replace('#include <project_vertex>', `#include <project_vertex>
+        mvPosition.xyz *= max(0.45, 1.0 - 1.4 * forward / length(mvPosition.xyz));
+        gl_Position = projectionMatrix * mvPosition;`);
+  };
+  const mesh = new InstancedMesh(geometry, material, places.length);
   const along = new Vector3();
   const up = new Vector3();
   const side = new Vector3();
