@@ -1,1 +1,35 @@
-int main() { return 0; }
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "commands.h"
+#include "console.h"
+
+int main(int argc, char** argv) {
+  using namespace isopath::app;
+  CLI::App app(
+      "isopath plans tool paths on free-form surfaces: a distance field on the part, its isolines, one curve through\n"
+      "them, and the tool's path.\n");
+  app.name("isopath");
+  app.set_version_flag("--version", "isopath " ISOPATH_VERSION);
+  app.footer(
+      "Start with:\n"
+      "  isopath check part.stl                 is the mesh fit for planning?\n"
+      "  isopath plan part.stl -o out           plan a path; look at out/report.html\n"
+      "'isopath COMMAND --help' explains a command with examples.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 no plan possible, 130 interrupted, 1 a fault of isopath.");
+  app.require_subcommand(1);
+
+  CommonFlags flags;
+  Action action;
+  add_field(app, flags, action);
+  add_contours(app, flags, action);
+  add_export(app, flags, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    constexpr int wrong_usage = 2;
+    return app.exit(error) == 0 ? 0 : wrong_usage;
+  }
+  listen_for_interrupts();
+  return run(flags, action);
+}

@@ -89,7 +89,7 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
               .rapid_speed_mm_per_min = number(),
               .chord_tolerance = number(),
               .axis_tolerance = number() * 1e-9};
-  if (pick(2)) job.programs = {"gcode", "poses"};
+  if (pick(2)) job.programs = {"gcode5", "yaml"};
   job.report = pick(2) == 0;
   return job;
 }
@@ -145,6 +145,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("tool:\n  ball_diameter: 0\n"), {"line 3", "tool.ball_diameter", "0", "above 0"});
   expect_all(complaint("planar_direction: [1, 2]\n"), {"line 2", "planar_direction", "a list of 2", "three"});
   expect_all(complaint("planar_direction: [0, 0, 0]\n"), {"planar_direction", "0, 0, 0"});
+  expect_all(complaint("programs: [apt]\n"), {"line 2", "programs", "'apt'", "gcode3, gcode5"});
   expect_all(complaint("report: yes please\n"), {"line 2", "report", "'yes please'", "true or false"});
   expect_all(complaint("spacing: [1\n"), {"line", "not a YAML file"});
 }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "isopath/core/error.h"
+#include "isopath/post/export.h"
 
 namespace isopath {
 namespace {
@@ -92,6 +94,12 @@ LengthUnit unit_of(std::string_view name) {
                      std::array{LengthUnit::millimetre, LengthUnit::centimetre, LengthUnit::metre, LengthUnit::inch});
 }
 
+void check_program_format(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const ExportFormat& format : export_formats()) names.push_back(format.name);
+  if (std::find(names.begin(), names.end(), name) == names.end()) refuse_name("program format", name, names);
+}
+
 void Job::validate() const {
   if (mesh.empty()) refuse("mesh", "no file is named", "name the mesh file to plan on");
   if (sources.empty() && pattern != Pattern::planar) refuse("sources", "none given", "'auto' chooses one");
@@ -103,6 +111,7 @@ void Job::validate() const {
     refuse("planar_direction",
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
   }
+  for (const std::string& format : programs) check_program_format(format);
   tool.validate();
 }
 

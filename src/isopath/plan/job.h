@@ -25,12 +25,13 @@ struct Job {
   LengthUnit unit = LengthUnit::millimetre;          ///< unit of the mesh file's coordinates
   std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
   std::optional<Pattern> pattern = {};               ///< none: spiral where the isolines are closed, meander where open
-  Vec3 planar_direction = Vec3::UnitX();   ///< planar: the direction the cutting planes follow each other in, not 0
-  double spacing = 0;                      ///< between neighbouring passes; 0 takes 1/60 of the part's size
-  double clearance = 0;                    ///< height of lifts above the surface; 0 takes the spacing
-  ToolOptions tool = {};                   ///< process, tool, feeds
-  std::vector<std::string> programs = {};  ///< formats to write the program in, of `program_formats()`
-  bool report = true;                      ///< write report.html
+  Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
+  double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
+  double clearance = 0;                   ///< height of lifts above the surface; 0 takes the spacing
+  ToolOptions tool = {};                  ///< process, tool, feeds
+  std::vector<std::string> programs =
+      {};              ///< formats to write the program in, of `export_formats()`; none: the planner chooses
+  bool report = true;  ///< write report.html
 
   /// Throws Error(bad_usage) naming the field, its value and its limit.
   void validate() const;
@@ -43,6 +44,7 @@ std::optional<Pattern> pattern_of(std::string_view name);
 /// Throw Error(bad_usage) listing the allowed names.
 Process process_of(std::string_view name);
 LengthUnit unit_of(std::string_view name);
+void check_program_format(std::string_view name);
 
 /// Reads a job file (YAML). Paths in it are relative to its folder. Throws Error(bad_input) with file, line, key,
 /// value and what is allowed, also for unknown keys and keys given twice.

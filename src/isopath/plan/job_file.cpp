@@ -93,7 +93,10 @@ Job read_job(const fs::path& path) {
   fields.read("spacing", job.spacing, {.least = 0});
   fields.read("clearance", job.clearance, {.least = 0});
   read_tool(fields.section("tool"), job.tool);
-  fields.read("programs", job.programs);
+  fields.read_texts("programs", [&](const std::string& text) {
+    check_program_format(text);
+    job.programs.push_back(text);
+  });
   fields.read("report", job.report);
   fields.finish();
   try {

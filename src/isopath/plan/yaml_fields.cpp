@@ -87,21 +87,11 @@ void YamlFields::read(const std::string& key, bool& value) {
   value = text == "true";
 }
 
-void YamlFields::read(const std::string& key, std::string& value) {
-  const YAML::Node node = take(key);
-  if (node) value = scalar(node, key, "a text");
-}
-
 void YamlFields::read(const std::string& key, Vec3& value) {
   const YAML::Node node = take(key);
   if (!node) return;
   if (!node.IsSequence() || node.size() != 3) reject(node, key, "three numbers [x, y, z] belong here", describe(node));
   for (int i = 0; i < 3; ++i) value[i] = number(node[i], key);
-}
-
-void YamlFields::read(const std::string& key, std::vector<std::string>& values) {
-  if (has(key)) values.clear();
-  read_texts(key, [&](const std::string& text) { values.push_back(text); });
 }
 
 void YamlFields::accept_text(const YAML::Node& node, const std::string& key,

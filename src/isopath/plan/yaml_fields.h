@@ -28,9 +28,7 @@ class YamlFields {
 
   void read(const std::string& key, double& value, const NumberRange& range = {});
   void read(const std::string& key, bool& value);
-  void read(const std::string& key, std::string& value);
   void read(const std::string& key, Vec3& value);
-  void read(const std::string& key, std::vector<std::string>& values);
   /// Hands the text to `accept`; an Error thrown by it gets the file, line and key.
   void read_text(const std::string& key, const std::function<void(const std::string&)>& accept);
   void read_texts(const std::string& key, const std::function<void(const std::string&)>& accept);

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "isopath/contour/contour_graph.h"
+#include "isopath/contour/isolines.h"
+#include "isopath/core/atomic_file.h"
+#include "isopath/core/error.h"
+#include "isopath/field/exact_field.h"
+#include "isopath/mesh/write_vtp.h"
+#include "isopath/plan/make_sources.h"
+#include "shared_options.h"
+
+namespace isopath::app {
+namespace {
+
+struct ContoursArguments {
+  MeshInput input;
+  double spacing = 0;
+  std::string output;
+};
+
+using Json = nlohmann::ordered_json;
+
+/// All multiples of the spacing below the largest distance.
+std::vector<double> levels_below(double largest, double spacing) {
+  constexpr double most = 1e6;
+  if (largest / spacing > most) {
+    throw Error(ErrorCode::bad_usage, "the spacing is too small for this part",
+                {.element = "option --spacing",
+                 .value = fmt::format("{}, the largest distance is {}", spacing, largest),
+                 .advice = fmt::format("allowed: {} or more", largest / most)});
+  }
+  std::vector<double> levels;
+  for (int k = 1; k * spacing < largest; ++k) levels.push_back(k * spacing);
+  return levels;
+}
+
+Json points_json(const TriangleMesh& mesh, const Contour& contour) {
+  Json points = Json::array();
+  for (const SurfacePoint& point : contour.points) {
+    const Vec3 p = position_of(mesh, point);
+    points.push_back({p.x(), p.y(), p.z()});
+  }
+  return points;
+}
+
+Json graph_json(const ContourGraph& graph) {
+  Json runs = Json::array();
+  for (const auto& run : graph.runs) {
+    runs.push_back(
+        {{"contours", run.contours}, {"closed", run.closed}, {"children", run.children}, {"parents", run.parents}});
+  }
+  return {{"children", graph.children}, {"parents", graph.parents}, {"order", graph.order}, {"runs", std::move(runs)}};
+}
+
+Json contours_json(const TriangleMesh& mesh, const std::vector<Contour>& contours, const ContourGraph& graph) {
+  Json list = Json::array();
+  for (const Contour& contour : contours) {
+    list.push_back({{"level", contour.level},
+                    {"closed", contour.closed},
+                    {"length", length_of(mesh, contour)},
+                    {"points", points_json(mesh, contour)}});
+  }
+  return {{"contours", std::move(list)}, {"graph", graph_json(graph)}};
+}
+
+VtpData contours_vtp(const TriangleMesh& mesh, const std::vector<Contour>& contours, const ContourGraph& graph) {
+  VtpData data;
+  VtpArray level{"level", {}};
+  VtpArray run{"run", std::vector<double>(contours.size(), -1)};
+  for (const Contour& contour : contours) {
+    std::vector<Index>& line = data.lines.emplace_back(contour.points.size());
+    std::iota(line.begin(), line.end(), static_cast<Index>(data.points.size()));
+    if (contour.closed) line.push_back(line.front());
+    for (const SurfacePoint& point : contour.points) data.points.push_back(position_of(mesh, point));
+    level.values.push_back(contour.level);
+  }
+  for (std::size_t r = 0; r < graph.runs.size(); ++r) {
+    for (const Index k : graph.runs[r].contours) run.values[k] = static_cast<double>(r);
+  }
+  data.cell_arrays = {std::move(level), std::move(run)};
+  return data;
+}
+
+Json summary_json(const TriangleMesh& mesh, const std::vector<double>& levels, const std::vector<Contour>& contours,
+                  const ContourGraph& graph) {
+  double length = 0;
+  std::size_t closed = 0;
+  for (const Contour& contour : contours) {
+    length += length_of(mesh, contour);
+    closed += contour.closed ? 1 : 0;
+  }
+  return {{"levels", levels.size()}, {"contours", contours.size()},
+          {"closed", closed},        {"open", contours.size() - closed},
+          {"length", length},        {"runs", graph.runs.size()}};
+}
+
+void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) {
+  const std::string extension = extension_of(arguments.output);
+  if (extension != ".vtp" && extension != ".json") {
+    refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .json");
+  }
+  if (!(arguments.spacing > 0) || arguments.spacing == infinity) {
+    refuse_value("option --spacing", fmt::format("{}", arguments.spacing), "a number above 0");
+  }
+  const auto specs = parse_sources(arguments.input.sources);
+  ConsoleProgress progress(flags.quiet);
+  const Part part = load(arguments.input, progress);
+  print_warnings(flags, part.warnings);
+  const SourceSet sources = make_sources(part.mesh, specs, part.vertex_of_file_vertex, progress);
+  progress.stage("distance field");
+  const ExactField field = ExactField::compute(part.mesh, sources, {}, progress);
+  progress.stage("contours");
+  const std::vector<double> levels = levels_below(field.max_vertex_distance(), arguments.spacing);
+  const auto [contours, graph] = contour_set(part.mesh, field, levels, {}, progress);
+
+  progress.checkpoint();
+  if (extension == ".json") {
+    write_file_atomically(arguments.output, contours_json(part.mesh, contours, graph).dump() + "\n");
+  } else {
+    write_vtp(arguments.output, contours_vtp(part.mesh, contours, graph));
+  }
+  if (!flags.json) return;
+  Json report = summary_json(part.mesh, levels, contours, graph);
+  report["output"] = arguments.output;
+  report["warnings"] = part.warnings;
+  print(report.dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_contours(CLI::App& app, CommonFlags& flags, Action& action) {
+  auto* command =
+      app.add_subcommand("contours", "Lines of equal distance from the sources, and how they lie side by side");
+  const auto arguments = std::make_shared<ContoursArguments>();
+  add_mesh(*command, arguments->input);
+  add_sources(*command, arguments->input.sources);
+  command->add_option("--spacing", arguments->spacing, "Distance from line to line, mm")->required();
+  command
+      ->add_option("-o,--output", arguments->output, ".vtp: polylines with level and run; .json: points and the graph")
+      ->required();
+  add_common_flags(*command, flags);
+  command->footer(
+      "Examples:\n"
+      "  isopath contours part.stl --source boundary --spacing 2 -o lines.vtp\n"
+      "  isopath contours part.stl --source edges:40 --spacing 5 -o lines.json --json\n\n" +
+      source_help());
+  command->callback(
+      [&flags, &action, arguments] { action = [&flags, arguments] { run_contours(*arguments, flags); }; });
+}
+
+}  // namespace isopath::app

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "isopath/core/atomic_file.h"
+#include "isopath/core/error.h"
+#include "isopath/field/exact_field.h"
+#include "isopath/field/graph_field.h"
+#include "isopath/mesh/write_mesh.h"
+#include "isopath/mesh/write_vtp.h"
+#include "isopath/plan/make_sources.h"
+#include "shared_options.h"
+
+namespace isopath::app {
+namespace {
+
+struct FieldArguments {
+  MeshInput input;
+  std::string method = "exact";
+  std::string output;
+  std::string path_to;
+};
+
+/// One value a line in the vertex order of the file; `inf` where no source reaches.
+std::string csv_of(const Part& part, std::span<const double> distances) {
+  std::string text;
+  for (const Index v : part.vertex_of_file_vertex) {
+    fmt::format_to(std::back_inserter(text), "{:.17g}\n", v == no_index ? infinity : distances[v]);
+  }
+  return text;
+}
+
+/// A traced path: its points, and the distance at each.
+struct Way {
+  std::vector<Vec3> points;
+  std::vector<double> distances;
+};
+
+VtpData vtp_of(const Part& part, std::span<const double> distances, const Way& way) {
+  const TriangleSoup& soup = part.mesh.soup();
+  VtpData data{
+      .points = soup.positions, .lines = {}, .triangles = soup.triangles, .point_arrays = {}, .cell_arrays = {}};
+  std::vector<double> values(distances.begin(), distances.end());
+  if (way.points.size() > 1) {
+    std::vector<Index>& line = data.lines.emplace_back(way.points.size());
+    std::iota(line.begin(), line.end(), part.mesh.n_vertices());
+    data.points.insert(data.points.end(), way.points.begin(), way.points.end());
+    values.insert(values.end(), way.distances.begin(), way.distances.end());
+  }
+  data.point_arrays.push_back({"distance", std::move(values)});
+  return data;
+}
+
+void write_field(const std::string& path, const Part& part, std::span<const double> distances, const Way& way) {
+  const std::string extension = extension_of(path);
+  if (extension == ".csv") return write_file_atomically(path, csv_of(part, distances));
+  if (extension == ".ply") return write_mesh(path, part.mesh.soup(), {.distance = distances});
+  write_vtp(path, vtp_of(part, distances, way));
+}
+
+Way trace(const Part& part, const ExactField& field, const std::string& target) {
+  const SurfacePoint start = make_point(part.mesh, parse_source_spec(target), part.vertex_of_file_vertex);
+  Way way;
+  for (const SurfacePoint& point : field.shortest_path(start)) {
+    way.points.push_back(position_of(part.mesh, point));
+    way.distances.push_back(field.value(point));
+  }
+  if (way.points.empty()) {
+    throw Error(
+        ErrorCode::no_plan, "no path leads there from the sources",
+        {.element = "option --path-to", .value = target, .advice = "add a source on that component of the part"});
+  }
+  return way;
+}
+
+std::string way_text(const Way& way) {
+  std::string text;
+  for (const Vec3& p : way.points) fmt::format_to(std::back_inserter(text), "{},{},{}\n", p.x(), p.y(), p.z());
+  return text;
+}
+
+nlohmann::ordered_json way_json(const Way& way) {
+  auto points = nlohmann::ordered_json::array();
+  for (const Vec3& p : way.points) points.push_back({p.x(), p.y(), p.z()});
+  return {{"length", way.distances.front()}, {"points", std::move(points)}};
+}
+
+void check(const FieldArguments& arguments) {
+  if (arguments.method != "exact" && arguments.method != "graph") {
+    refuse_value("option --method", arguments.method, "exact, graph");
+  }
+  if (arguments.method != "exact" && !arguments.path_to.empty()) {
+    refuse_value("option --method", arguments.method, "exact, since --path-to traces shortest paths through windows");
+  }
+  const std::string extension = extension_of(arguments.output);
+  if (!arguments.output.empty() && extension != ".csv" && extension != ".ply" && extension != ".vtp") {
+    refuse_value("option -o", arguments.output, "a file name that ends in .csv, .ply or .vtp");
+  }
+  if (arguments.output.empty() && arguments.path_to.empty()) {
+    throw Error(ErrorCode::bad_usage, "nothing to do: neither -o nor --path-to is given");
+  }
+}
+
+struct Distances {
+  std::vector<double> at_vertices;
+  Way way;  ///< empty unless it was asked for
+};
+
+Distances distances_of(const FieldArguments& arguments, const Part& part, const SourceSet& sources,
+                       Progress& progress) {
+  if (arguments.method == "graph") {
+    return {graph_distances(part.mesh, sources, {.virtual_vertices = 0, .across_pairs = true}, progress), {}};
+  }
+  const ExactField field = ExactField::compute(part.mesh, sources, {}, progress);
+  Distances found{{field.vertex_distances().begin(), field.vertex_distances().end()}, {}};
+  if (!arguments.path_to.empty()) found.way = trace(part, field, arguments.path_to);
+  return found;
+}
+
+void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
+  check(arguments);
+  const auto specs = parse_sources(arguments.input.sources);
+  ConsoleProgress progress(flags.quiet);
+  const Part part = load(arguments.input, progress);
+  print_warnings(flags, part.warnings);
+  const SourceSet sources = make_sources(part.mesh, specs, part.vertex_of_file_vertex, progress);
+  progress.stage("distance field");
+  const Distances found = distances_of(arguments, part, sources, progress);
+  const std::vector<double>& distances = found.at_vertices;
+  const Way& way = found.way;
+  progress.checkpoint();
+  if (!arguments.output.empty()) write_field(arguments.output, part, distances, way);
+  if (!flags.json) return print(way_text(way));
+
+  double largest = 0;
+  for (const double d : distances) largest = d < infinity ? std::max(largest, d) : largest;
+  const auto unreached = std::count(distances.begin(), distances.end(), infinity);
+  nlohmann::ordered_json report = {{"vertices", part.vertex_of_file_vertex.size()},
+                                   {"triangles", part.mesh.n_faces()},
+                                   {"method", arguments.method},
+                                   {"max_distance", largest},
+                                   {"unreached_vertices", unreached},
+                                   {"output", arguments.output},
+                                   {"warnings", part.warnings}};
+  if (!way.points.empty()) report["path"] = way_json(way);
+  print(report.dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_field(CLI::App& app, CommonFlags& flags, Action& action) {
+  auto* command =
+      app.add_subcommand("field", "The geodesic distance from the sources at every vertex, and shortest paths");
+  const auto arguments = std::make_shared<FieldArguments>();
+  add_mesh(*command, arguments->input);
+  add_sources(*command, arguments->input.sources);
+  command
+      ->add_option("--method", arguments->method,
+                   "exact: true distances on the polyhedral surface;\ngraph: along edges and across pairs of faces, "
+                   "never too short")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output,
+                      ".csv: one value a line in the vertex order of the file; .ply, .vtp: the mesh with 'distance'");
+  command->add_option(
+      "--path-to", arguments->path_to,
+      "Trace the shortest path from point:X,Y,Z or vertex:I back to the sources; printed as x,y,z lines");
+  add_common_flags(*command, flags);
+  command->footer(
+      "Examples:\n"
+      "  isopath field part.stl --source boundary -o distance.vtp\n"
+      "  isopath field part.off --source vertex:12 --source point:3,4,5 -o distance.csv\n"
+      "  isopath field part.ply --source plane:0,0,1,20 --path-to vertex:900 > path.csv\n\n" +
+      source_help());
+  command->callback([&flags, &action, arguments] { action = [&flags, arguments] { run_field(*arguments, flags); }; });
+}
+
+}  // namespace isopath::app

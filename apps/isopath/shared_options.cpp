@@ -1,0 +1,54 @@
+#include "shared_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "isopath/core/error.h"
+
+namespace isopath::app {
+
+void add_mesh(CLI::App& command, MeshInput& input) {
+  command.add_option("MESH", input.mesh, "The part: STL, OBJ, PLY, OFF, STEP or IGES")->required();
+  add_unit(command, input.unit);
+}
+
+CLI::Option* add_unit(CLI::App& command, std::string& unit) {
+  return command.add_option("--unit", unit, "Unit of the mesh file: mm, cm, m or inch")->capture_default_str();
+}
+
+CLI::Option* add_sources(CLI::App& command, std::vector<std::string>& sources) {
+  return command
+      .add_option("--source", sources, "Where distances are measured from, see below; may be repeated, sources join")
+      ->type_name("SRC")
+      ->allow_extra_args(false)
+      ->default_str("auto");
+}
+
+Part load(const MeshInput& input, Progress& progress) { return load_part(input.mesh, unit_of(input.unit), progress); }
+
+std::vector<SourceSpec> parse_sources(const std::vector<std::string>& texts) {
+  std::vector<SourceSpec> specs;
+  for (const std::string& text : texts) specs.push_back(parse_source_spec(text));
+  return specs;
+}
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void refuse_value(std::string_view option, std::string_view value, std::string_view allowed) {
+  throw Error(ErrorCode::bad_usage, "the option does not take this",
+              {.element = std::string(option),
+               .value = fmt::format("'{}'", value),
+               .advice = fmt::format("allowed: {}", allowed)});
+}
+
+std::string source_help() { return fmt::format("SRC is one of\n{}\n", source_spec_forms()); }
+
+}  // namespace isopath::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isopath/plan/load_part.h"
+#include "isopath/plan/source_spec.h"
+
+namespace isopath::app {
+
+/// What the commands that start from a mesh and sources have in common.
+struct MeshInput {
+  std::string mesh;
+  std::string unit = "mm";
+  std::vector<std::string> sources = {"auto"};
+};
+
+void add_mesh(CLI::App& command, MeshInput& input);
+CLI::Option* add_unit(CLI::App& command, std::string& unit);
+CLI::Option* add_sources(CLI::App& command, std::vector<std::string>& sources);
+
+/// Reads and repairs the mesh that was named.
+Part load(const MeshInput& input, Progress& progress);
+std::vector<SourceSpec> parse_sources(const std::vector<std::string>& texts);
+
+/// The extension of a path in lower case, with its dot.
+std::string extension_of(const std::string& path);
+/// Throws Error(bad_usage) that lists what an option takes.
+[[noreturn]] void refuse_value(std::string_view option, std::string_view value, std::string_view allowed);
+
+/// Explains SRC at the end of a command's help.
+std::string source_help();
+
+}  // namespace isopath::app

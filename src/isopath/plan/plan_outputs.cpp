@@ -1,0 +1,65 @@
+#include "isopath/plan/plan_outputs.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "isopath/plan/plan_report.h"
+#include "isopath/post/csv.h"
+#include "isopath/post/path_vtp.h"
+
+namespace isopath {
+std::string summary_json(const PlanResult& result) {
+  using Json = nlohmann::ordered_json;
+  const PathFigures& figures = result.figures;
+  const GapReport& gap = result.gap;
+  const auto over_spacing = [&](double length) { return length / result.spacing; };
+  Json times = Json::object();
+  double total = 0;
+  for (const StageTime& time : result.times) {
+    times[time.stage] = time.seconds;
+    total += time.seconds;
+  }
+  times["total"] = total;
+  const Json summary = {{"area", gap.area},
+                        {"spacing", result.spacing},
+                        {"pattern", name_of(std::optional(result.pattern))},
+                        {"cover_length", figures.cover_length},
+                        {"length_ratio", figures.cover_length * result.spacing / gap.area},
+                        {"pieces", figures.pieces},
+                        {"lifts", figures.lifts},
+                        {"links_length", figures.links_length},
+                        {"gap",
+                         {{"max", over_spacing(gap.max)},
+                          {"p99", over_spacing(gap.p99)},
+                          {"mean", over_spacing(gap.mean)},
+                          {"cv", gap.cv}}},
+                        {"covered_fraction", gap.covered_fraction},
+                        {"min_radius", figures.min_radius},
+                        {"sharp_corners", figures.sharp_corners},
+                        {"path_time_s", result.tool.points.empty() ? 0 : result.tool.points.back().time},
+                        {"time_s", std::move(times)},
+                        {"peak_memory_mb", result.peak_memory_mb},
+                        {"warnings", result.warnings}};
+  return summary.dump(2) + "\n";
+}
+
+std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesystem::path& folder) {
+  std::vector<OutputFile> files = {{"summary.json", summary_json(result)},
+                                   {"impact.csv", impact_csv(result.impact.curve)},
+                                   {"tool.csv", tool_csv(result.tool)},
+                                   {"path.vtp", path_vtp(result.tool)},
+                                   {"job.yaml", job_yaml(result.job, folder)}};
+  files.insert(files.end(), result.programs.begin(), result.programs.end());
+  if (result.job.report) files.push_back({"report.html", plan_report(result)});
+  return files;
+}
+
+void write_outputs(const PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
+  progress.stage("write");
+  const std::vector<OutputFile> files = plan_outputs(result, folder);
+  progress.checkpoint();
+  write_output_folder(folder, files);
+}
+
+}  // namespace isopath

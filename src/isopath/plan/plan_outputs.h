@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/plan/output_folder.h"
+#include "isopath/plan/run_plan.h"
+
+namespace isopath {
+
+/// The figures of a run as one JSON object: `area`, `spacing`, `pattern`, `cover_length`, `length_ratio`, `pieces`,
+/// `lifts`, `links_length`, `gap` (`max`, `p99`, `mean`, `cv`, all over the spacing), `covered_fraction`, `min_radius`
+/// (null where the path is straight), `sharp_corners`, `path_time_s`, `time_s` per stage, `peak_memory_mb`,
+/// `warnings`. Only `time_s` and `peak_memory_mb` differ from run to run.
+std::string summary_json(const PlanResult& result);
+
+/// All files of a run: summary.json, impact.csv, tool.csv, path.vtp, the programs, job.yaml (with paths relative to
+/// `folder`) and report.html.
+std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesystem::path& folder);
+
+/// Writes them, all or none. Throws Error(bad_input) naming the folder when it cannot be written.
+void write_outputs(const PlanResult& result, const std::filesystem::path& folder,
+                   Progress& progress = Progress::none());
+
+}  // namespace isopath

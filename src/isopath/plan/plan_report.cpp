@@ -1,0 +1,84 @@
+#include "isopath/plan/plan_report.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "isopath/post/report.h"
+
+namespace isopath {
+namespace {
+
+std::string text(double value) { return fmt::format("{:.4g}", value); }
+
+ReportTable figures_table(const PlanResult& result) {
+  const PathFigures& f = result.figures;
+  const GapReport& gap = result.gap;
+  const double w = result.spacing;
+  return {"Path",
+          {{"area", text(gap.area), "mm²"},
+           {"spacing", text(w), "mm", "Wanted distance between neighbouring passes."},
+           {"pattern", std::string(name_of(std::optional(result.pattern)))},
+           {"covering length", text(f.cover_length), "mm"},
+           {"length ratio", text(f.cover_length * w / gap.area), "",
+            "Covering length × spacing / area: 1 is the least that evenly spaced passes need."},
+           {"links", text(f.links_length), "mm", "Moves on the surface between passes."},
+           {"pieces", fmt::format("{}", f.pieces), "", "Stretches covered without leaving the surface."},
+           {"lifts", fmt::format("{}", f.lifts)},
+           {"smallest radius", f.min_radius < infinity ? text(f.min_radius) : "straight",
+            f.min_radius < infinity ? "mm" : "", "Along covering moves."},
+           {"sharp corners", fmt::format("{}", f.sharp_corners), "", "Turns by more than 45 degrees."},
+           {"time on the path", text(result.tool.points.empty() ? 0 : result.tool.points.back().time), "s",
+            "Length over feed; accelerations are left out."}}};
+}
+
+ReportTable coverage_table(const PlanResult& result) {
+  const GapReport& gap = result.gap;
+  const double w = result.spacing;
+  return {"Coverage",
+          {{"covered", text(100 * gap.covered_fraction), "%", "Share of the area whose gap is at most 1.02 × spacing."},
+           {"widest gap", text(gap.max / w), "× spacing", "Twice the geodesic distance from the surface to the path."},
+           {"gap of 99 %", text(gap.p99 / w), "× spacing", "99 % of the area have at most this gap."},
+           {"mean gap", text(gap.mean / w), "× spacing"},
+           {"evenness", text(gap.cv), "", "Standard deviation of the gap between passes over its mean."}}};
+}
+
+std::vector<ReportIsoline> isolines_of(const PlanResult& result) {
+  std::vector<ReportIsoline> lines;
+  for (const Contour& contour : result.impact.contours) {
+    ReportIsoline& line = lines.emplace_back();
+    line.closed = contour.closed;
+    line.level = contour.level;
+    for (const SurfacePoint& point : contour.points) line.points.push_back(position_of(result.part.mesh, point));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string plan_report(const PlanResult& result) {
+  const double w = result.spacing;
+  ReportData data;
+  data.title = result.job.mesh.filename().string();
+  data.subtitle = fmt::format("{} path, {} mm between passes", name_of(std::optional(result.pattern)), text(w));
+  data.mesh = &result.part.mesh;
+  data.scalars = {
+      {.name = result.pattern == Pattern::planar ? "height" : "distance", .unit = "mm", .values = result.distances},
+      {.name = "gap", .unit = "mm", .values = result.gap.vertex_gap, .least = 0, .greatest = 2 * w, .limit = 1.02 * w}};
+  data.isolines = isolines_of(result);
+  data.impact = &result.impact.curve;
+  data.tool = &result.tool;
+  data.tables = {figures_table(result), coverage_table(result)};
+  data.histograms = {{.title = "Gap over the surface",
+                      .unit = "mm",
+                      .bin_width = w / 20,
+                      .shares = result.gap.histogram,
+                      .marks = {{w, "spacing"}},
+                      .limit = 1.02 * w}};
+  data.warnings = result.warnings;
+  return report_html(data);
+}
+
+}  // namespace isopath

@@ -1,0 +1,153 @@
+#include "isopath/plan/run_plan.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "isopath/contour/isolines.h"
+#include "isopath/core/error.h"
+#include "isopath/field/exact_field.h"
+#include "isopath/field/vertex_field.h"
+#include "isopath/plan/make_programs.h"
+#include "isopath/plan/make_sources.h"
+#include "isopath/tool/make_tool_path.h"
+
+namespace isopath {
+namespace {
+
+/// Shares of the part's size that are taken where the job names no spacing.
+constexpr double passes_over_size = 60;
+
+class StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& times) : times_(times) {}
+  /// The stage that ran since the last call ends.
+  void ends(const char* stage) {
+    const auto now = Clock::now();
+    times_.push_back({stage, std::chrono::duration<double>(now - last_).count()});
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::vector<StageTime>& times_;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// The most memory the process has held at once.
+double peak_memory_mb() {
+  struct rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
+}
+
+double spacing_of(const Job& job, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  if (job.spacing > 0) return job.spacing;
+  const double spacing = mesh.size() / passes_over_size;
+  warnings.push_back(
+      fmt::format("no spacing was given: {} mm was taken, 1/{:.0f} of the part's size", spacing, passes_over_size));
+  return spacing;
+}
+
+struct Field {
+  std::unique_ptr<SurfaceFunction> function;
+  std::vector<double> at_vertices;
+};
+
+Field field_of(const Job& job, const Part& part, Progress& progress) {
+  progress.stage("distance field");
+  if (job.pattern == Pattern::planar) {
+    auto height = std::make_unique<VertexField>(height_field(part.mesh, job.planar_direction));
+    std::vector<double> values(height->values().begin(), height->values().end());
+    return {std::move(height), std::move(values)};
+  }
+  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress);
+  auto exact = std::make_unique<ExactField>(ExactField::compute(part.mesh, sources, {}, progress));
+  std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
+  return {std::move(exact), std::move(values)};
+}
+
+void warn_of_unreached(const TriangleMesh& mesh, const std::vector<double>& distances,
+                       std::vector<std::string>& warnings) {
+  std::vector<char> reached(mesh.n_components(), 0);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    for (const Index v : mesh.triangle(f)) {
+      if (distances[v] < infinity) reached[mesh.component_of(f)] = 1;
+    }
+  }
+  const auto unreached = std::count(reached.begin(), reached.end(), 0);
+  if (unreached == 0) return;
+  warnings.push_back(
+      fmt::format("{} of the part's {} components hold no source and are not covered", unreached, mesh.n_components()));
+}
+
+/// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell.
+Pattern pattern_of(const TriangleMesh& mesh, const Field& field, Progress& progress) {
+  double largest = 0;
+  for (const double value : field.at_vertices) {
+    if (value < infinity) largest = std::max(largest, value);
+  }
+  std::vector<double> levels;
+  if (largest > 0) {
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) levels.push_back(share * largest);
+  }
+  double closed = 0;
+  double open = 0;
+  for (const Contour& contour : isolines(mesh, *field.function, levels, {}, progress)) {
+    (contour.closed ? closed : open) += length_of(mesh, contour);
+  }
+  return closed >= open ? Pattern::spiral : Pattern::meander;
+}
+
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+PlanResult run_plan(const Job& job, Progress& progress) {
+  job.validate();
+  PlanResult result;
+  result.job = job;
+  StageClock clock(result.times);
+
+  result.part = load_part(job.mesh, job.unit, progress);
+  append(result.warnings, result.part.warnings);
+  const TriangleMesh& mesh = result.part.mesh;
+  clock.ends("read");
+
+  result.spacing = spacing_of(job, mesh, result.warnings);
+  Field field = field_of(job, result.part, progress);
+  warn_of_unreached(mesh, field.at_vertices, result.warnings);
+  clock.ends("field");
+
+  result.pattern = job.pattern ? *job.pattern : pattern_of(mesh, field, progress);
+  result.impact =
+      plan_impact(mesh, *field.function,
+                  {.pattern = result.pattern, .spacing = result.spacing, .clearance = job.clearance}, progress);
+  append(result.warnings, result.impact.warnings);
+  result.distances = std::move(field.at_vertices);
+  field.function.reset();  // its windows are the largest thing in memory, and the gap needs windows of its own
+  clock.ends("impact");
+
+  progress.stage("gap");
+  result.gap = measure_gap(mesh, result.impact.curve, result.spacing, progress);
+  result.figures = path_figures(result.impact.curve, result.spacing);
+  clock.ends("gap");
+
+  progress.stage("tool path");
+  result.tool = make_tool_path(result.impact.curve, job.tool);
+  clock.ends("tool");
+
+  progress.stage("program");
+  result.programs = make_programs(result.tool, job, result.warnings);
+  clock.ends("program");
+  result.peak_memory_mb = peak_memory_mb();
+  return result;
+}
+
+}  // namespace isopath

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/impact/gap.h"
+#include "isopath/impact/impact_plan.h"
+#include "isopath/plan/job.h"
+#include "isopath/plan/load_part.h"
+#include "isopath/plan/output_folder.h"
+#include "isopath/plan/path_figures.h"
+#include "isopath/tool/tool_path.h"
+
+namespace isopath {
+
+/// What a stage of a run cost.
+struct StageTime {
+  std::string stage;  ///< read, field, impact, gap, tool or program
+  double seconds = 0;
+};
+
+/// All that a run found. Lengths in mm.
+struct PlanResult {
+  Job job;  ///< as it was given: where it leaves a choice to the planner, the choice is in this result
+  Part part;
+  double spacing = 0;
+  Pattern pattern = Pattern::spiral;
+  std::vector<double> distances;  ///< at every vertex: from the sources, or the height for planar; infinity: unreached
+  ImpactPlan impact;
+  GapReport gap;
+  PathFigures figures;
+  ToolPath tool;
+  std::vector<OutputFile> programs;  ///< of `make_programs`
+  std::vector<StageTime> times;
+  double peak_memory_mb = 0;          ///< of the process so far
+  std::vector<std::string> warnings;  ///< what the user should know, of all stages
+};
+
+/// Runs the whole chain: reads and repairs the part, computes the field of the sources, connects its isolines to an
+/// impact curve, measures the gap and lifts the curve to a tool path. Depends on nothing but the job and its files:
+/// the same job gives the same result, but for times and memory.
+/// Throws Error(bad_usage) for a job that cannot be run, Error(bad_input) for a file, Error(no_plan) with the reason
+/// when nothing can be covered, Error(cancelled) on request.
+PlanResult run_plan(const Job& job, Progress& progress = Progress::none());
+
+}  // namespace isopath

@@ -1,0 +1,202 @@
+"""Runs the program as people run it: arguments in; files, standard output and exit status out.
+
+Usage: cli_test.py PROGRAM COMMAND,COMMAND,... [unittest arguments]
+"""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = ""
+COMMANDS = []
+OK, FAULT, USAGE, INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+def grid_off(nx, ny, step):
+    """A plane of nx by ny squares of two triangles; vertex (i, j) is number j (nx + 1) + i."""
+    vertices = [(i * step, j * step, 0) for j in range(ny + 1) for i in range(nx + 1)]
+    triangles = []
+    for j in range(ny):
+        for i in range(nx):
+            a = j * (nx + 1) + i
+            b = a + nx + 1
+            triangles += [(a, a + 1, b + 1), (a, b + 1, b)]
+    lines = [f"OFF\n{len(vertices)} {len(triangles)} 0"]
+    lines += [f"{x} {y} {z}" for x, y, z in vertices]
+    lines += ["3 %d %d %d" % t for t in triangles]
+    return vertices, "\n".join(lines) + "\n"
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.vertices, text = grid_off(8, 5, 10)
+        self.plane = self.path("plane.off")
+        self.write(self.plane, text)
+
+    def path(self, *names):
+        return os.path.join(self.folder.name, *names)
+
+    @staticmethod
+    def write(path, text):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    @staticmethod
+    def read(path):
+        with open(path, "rb") as file:
+            return file.read()
+
+    def assert_refused(self, result, status, *parts):
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertIn("isopath: error: ", result.stderr)
+        self.assertEqual(result.stdout, "")
+        for part in parts:
+            self.assertIn(part, result.stderr)
+
+
+class Usage(Program):
+    def test_help_of_every_command_has_examples(self):
+        top = run("--help")
+        self.assertEqual(top.returncode, OK)
+        for command in COMMANDS:
+            self.assertIn(command, top.stdout)
+            result = run(command, "--help")
+            self.assertEqual(result.returncode, OK, command)
+            self.assertIn("Examples:", result.stdout, command)
+
+    def test_wrong_usage_is_2(self):
+        self.assertEqual(run().returncode, USAGE)
+        self.assertEqual(run("fly").returncode, USAGE)
+        self.assertEqual(run("field").returncode, USAGE)
+        self.assertEqual(run("field", self.plane, "-o", "d.csv", "--wings").returncode, USAGE)
+        self.assertEqual(run("field", self.plane, "--threads", "-1", "-o", "d.csv").returncode, USAGE)
+        out = self.path("d.csv")
+        self.assert_refused(run("field", self.plane, "--source", "border", "-o", out), USAGE, "'border'", "boundary:K")
+        self.assert_refused(run("field", self.plane, "--source", "vertex:54", "-o", out), USAGE, "54 of 54")
+        self.assert_refused(run("field", self.plane, "--method", "magic", "-o", out), USAGE, "magic", "exact")
+        self.assert_refused(run("field", self.plane, "-o", self.path("d.xyz")), USAGE, ".csv, .ply or .vtp")
+        self.assert_refused(run("field", self.plane), USAGE, "--path-to")
+        self.assertFalse(os.path.exists(out))
+
+    def test_bad_input_is_3_and_says_where(self):
+        out = self.path("d.csv")
+        self.assert_refused(run("field", self.path("none.stl"), "-o", out), INPUT, "none.stl", "No such file")
+        broken = self.path("broken.off")
+        self.write(broken, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 oops 0\n3 0 1 2\n")
+        self.assert_refused(run("field", broken, "-o", out), INPUT, "broken.off: line 5", "oops")
+        line = self.path("line.csv")
+        self.write(line, "1,2,3\n4,5\n")
+        self.assert_refused(
+            run("field", self.plane, "--source", "polyline:" + line, "-o", out), INPUT, "line.csv: line 2", "4,5")
+        self.assertFalse(os.path.exists(out))
+
+    def test_an_output_that_cannot_be_written_is_3(self):
+        self.assert_refused(run("field", self.plane, "-o", self.path("plane.off", "d.csv")), INPUT, "plane.off")
+
+
+class Field(Program):
+    def distances(self, *arguments):
+        out = self.path("out", "d.csv")
+        result = run("field", self.plane, *arguments, "-o", out)
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(result.stdout, "")
+        return [float(line) for line in self.read(out).decode().splitlines()]
+
+    def test_csv_of_a_plane_holds_the_distances_of_the_plane(self):
+        corner = self.distances("--source", "vertex:0")
+        self.assertEqual(len(corner), len(self.vertices))
+        for (x, y, _), d in zip(self.vertices, corner):
+            self.assertAlmostEqual(d, math.hypot(x, y), delta=1e-10)
+        for (x, y, _), d in zip(self.vertices, self.distances("--source", "boundary")):
+            self.assertAlmostEqual(d, min(x, 80 - x, y, 50 - y), delta=1e-10)
+        for (x, y, _), d in zip(self.vertices, self.distances("--source", "plane:1,0,0,33", "--source", "point:80,50,7")):
+            self.assertAlmostEqual(d, min(abs(x - 33), math.hypot(x - 80, y - 50)), delta=1e-10)
+
+    def test_units_are_converted(self):
+        self.assertAlmostEqual(max(self.distances("--source", "vertex:0", "--unit", "cm")), 10 * math.hypot(80, 50))
+
+    def test_threads_do_not_change_a_bit(self):
+        one, two = self.path("1.csv"), self.path("2.csv")
+        self.assertEqual(run("field", self.plane, "--threads", 1, "-o", one).returncode, OK)
+        self.assertEqual(run("field", self.plane, "--threads", 2, "-o", two).returncode, OK)
+        self.assertEqual(self.read(one), self.read(two))
+
+    def test_path_leads_straight_back(self):
+        result = run("field", self.plane, "--source", "vertex:0", "--path-to", "vertex:53", "--json", "--quiet")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(result.stderr, "")
+        path = json.loads(result.stdout)["path"]
+        self.assertAlmostEqual(path["length"], math.hypot(80, 50))
+        self.assertEqual(path["points"][0], [80, 50, 0])
+        self.assertEqual(path["points"][-1], [0, 0, 0])
+        for x, y, _ in path["points"]:
+            self.assertAlmostEqual(x * 50, y * 80, delta=1e-8)
+
+    def test_every_format_is_written(self):
+        for name in ["d.csv", "d.ply", "d.vtp"]:
+            result = run("field", self.plane, "-o", self.path(name), "--json")
+            self.assertEqual(result.returncode, OK, result.stderr)
+            self.assertEqual(json.loads(result.stdout)["vertices"], 54)
+            self.assertGreater(len(self.read(self.path(name))), 54)
+
+
+class Contours(Program):
+    def test_lines_of_a_plane_lie_at_their_level(self):
+        out, edge = self.path("lines.json"), self.path("edge.csv")
+        self.write(edge, "x,y,z\n0,0,0\n0,50,0\n")
+        result = run("contours", self.plane, "--source", "polyline:" + edge, "--spacing", 15, "-o", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["contours"], 5)
+        content = json.loads(self.read(out))
+        self.assertEqual([c["level"] for c in content["contours"]], [15, 30, 45, 60, 75])
+        for contour in content["contours"]:
+            self.assertFalse(contour["closed"])
+            self.assertAlmostEqual(contour["length"], 50)
+            for x, _, _ in contour["points"]:
+                self.assertAlmostEqual(x, contour["level"], delta=1e-8)
+        self.assertEqual(content["graph"]["children"], [[1], [2], [3], [4], []])
+
+    def test_spacing_is_checked(self):
+        out = self.path("lines.vtp")
+        self.assert_refused(run("contours", self.plane, "--spacing", 0, "-o", out), USAGE, "--spacing", "above 0")
+        self.assert_refused(run("contours", self.plane, "--spacing", 1e-9, "-o", out), USAGE, "--spacing", "or more")
+
+
+class Interrupt(Program):
+    def test_ctrl_c_stops_within_a_second_and_leaves_nothing(self):
+        _, text = grid_off(400, 400, 1)
+        large = self.path("large.off")
+        self.write(large, text)
+        out = self.path("out")
+        os.mkdir(out)
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            process = subprocess.Popen([PROGRAM, "field", large, "-o", os.path.join(out, "d.csv")],
+                                       stderr=subprocess.PIPE, text=True)
+            while "distance field" not in process.stderr.readline():
+                self.assertIsNone(process.poll(), "ended before it could be interrupted")
+            start = time.monotonic()
+            process.send_signal(sent)
+            message = process.stderr.read()
+            process.stderr.close()
+            self.assertEqual(process.wait(60), INTERRUPTED, message)
+            self.assertLess(time.monotonic() - start, 1)
+            self.assertIn("interrupted", message)
+            self.assertEqual(os.listdir(out), [])
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    COMMANDS = [name for name in sys.argv.pop(1).split(",") if name]
+    unittest.main(verbosity=1)
