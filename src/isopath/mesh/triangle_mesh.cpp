@@ -18,14 +18,11 @@ constexpr const char* repair_advice = "run 'isopath check --repair' on the file 
               {.element = std::move(element), .value = std::move(value), .advice = repair_advice});
 }
 
-/// Squared lengths, and products of them, must stay finite.
-constexpr double largest_coordinate = 1e75;
-
 void check_values(const TriangleSoup& soup) {
   const auto n = static_cast<Index>(soup.positions.size());
   for (Index v = 0; v < n; ++v) {
     const Vec3& p = soup.positions[v];
-    if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_coordinate) {
+    if (!is_usable(p)) {
       reject("coordinate is not a usable number", fmt::format("vertex {}", v),
              fmt::format("{} {} {}", p.x(), p.y(), p.z()));
     }

@@ -16,6 +16,14 @@ struct TriangleSoup {
   std::vector<Triangle> triangles;
 };
 
+/// Coordinates beyond this cannot be used: squared lengths, and products of them, must stay finite.
+inline constexpr double largest_coordinate = 1e75;
+
+/// True when all coordinates are finite and not beyond largest_coordinate.
+inline bool is_usable(const Vec3& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() <= largest_coordinate;
+}
+
 /// Bounding box of the finite positions.
 Box3 bounding_box(const TriangleSoup& soup);
 
