@@ -6,6 +6,7 @@
 #include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
+
 void SourceSet::add_vertex(const TriangleMesh& mesh, Index vertex) { add_point(point_at_vertex(mesh, vertex)); }
 
 void SourceSet::add_point(const SurfacePoint& point) { elements_.push_back({.a = point, .b = point}); }

@@ -12,8 +12,9 @@ namespace isopath {
 struct GapReport {
   double max = 0;
   double p99 = 0;   ///< 99 % of the area has at most this gap
-  double mean = 0;  ///< area-weighted
-  double cv = 0;    ///< coefficient of variation of the gap *between* passes: standard deviation / mean, area-weighted
+  double mean = 0;  ///< area-weighted; half a spacing for ideal parallel passes
+  double cv =
+      0;  ///< coefficient of variation: standard deviation / mean, area-weighted; ideal parallel passes have 1/√3
   double covered_fraction = 0;     ///< share of the area whose gap is at most 1.02 × spacing
   double area = 0;                 ///< mm²
   std::vector<double> vertex_gap;  ///< in the mesh's vertex order; infinity where no pass reaches

@@ -1,0 +1,160 @@
+#include "isopath/impact/impact_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "isopath/core/error.h"
+#include "isopath/impact/curve_assembly.h"
+#include "isopath/impact/passes.h"
+#include "isopath/impact/spiral.h"
+#include "isopath/impact/stroke_order.h"
+
+namespace isopath {
+namespace {
+
+/// A link on the surface passes over what is covered already; beyond a few spacings the tool rather lifts.
+constexpr double longest_link_in_spacings = 8;
+
+std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
+  std::vector<Vec3> places;
+  const std::size_t stride = std::max<std::size_t>(1, contour.points.size() / most);
+  for (std::size_t i = 0; i < contour.points.size(); i += stride)
+    places.push_back(position_of(mesh, contour.points[i]));
+  return places;
+}
+
+/// Gate g of a run: bit 0 tells whether it is entered at its last contour, bit 1 (open runs) at the end of a contour's
+/// points.
+std::vector<Gate> gates_of(const TriangleMesh& mesh, const Passes& passes, const Passes::Run& run,
+                           std::size_t samples) {
+  std::vector<Gate> gates;
+  const Contour* ends[2] = {&passes.contours[run.contours.front()], &passes.contours[run.contours.back()]};
+  if (run.closed) {
+    for (int g = 0; g < 2; ++g)
+      gates.push_back({sample_positions(mesh, *ends[g], samples), sample_positions(mesh, *ends[1 - g], samples)});
+    return gates;
+  }
+  const auto place = [&](const Contour& contour, bool at_end) {
+    return std::vector<Vec3>{position_of(mesh, at_end ? contour.points.back() : contour.points.front())};
+  };
+  for (int g = 0; g < 4; ++g) {
+    const bool at_end = g & 2;
+    // passes are walked to and fro: after an odd number of them the curve comes out on the other side
+    const bool out_at_end = run.contours.size() % 2 == 1 ? !at_end : at_end;
+    gates.push_back({place(*ends[g & 1], at_end), place(*ends[1 - (g & 1)], out_at_end)});
+  }
+  return gates;
+}
+
+class Planner {
+ public:
+  Planner(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options, Progress& progress)
+      : mesh_(mesh),
+        function_(function),
+        options_(options),
+        progress_(progress),
+        locator_(mesh),
+        normals_(mesh),
+        linker_(mesh, locator_) {}
+
+  ImpactPlan run() {
+    progress_.stage("isolines");
+    passes_ = choose_passes(mesh_, function_, options_.spacing, progress_);
+    if (passes_.contours.empty()) {
+      throw Error(
+          ErrorCode::no_plan, "no isoline lies on the surface",
+          {.element = "option spacing",
+           .value = fmt::format("{} mm", options_.spacing),
+           .advice = "the source reaches nothing, or the spacing is too wide for the part: give a smaller one"});
+    }
+    progress_.stage("curve");
+    CurveAssembly assembly(
+        linker_, normals_,
+        {longest_link_in_spacings * options_.spacing, options_.clearance > 0 ? options_.clearance : options_.spacing});
+    std::vector<std::vector<Gate>> gates;
+    const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;
+    for (const Passes::Run& run : passes_.runs) gates.push_back(gates_of(mesh_, passes_, run, samples));
+    const double lift_cost = 20 * options_.spacing;
+    std::size_t done = 0;
+    for (const Visit& visit : order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost)) {
+      progress_.checkpoint();
+      add_run(passes_.runs[visit.run], visit.gate, assembly);
+      progress_.at(static_cast<double>(++done) / static_cast<double>(passes_.runs.size()));
+    }
+    ImpactPlan plan;
+    if (assembly.blocked_lifts() > 0) {
+      plan.warnings.push_back(
+          fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
+    }
+    plan.curve = assembly.take();
+    plan.contours = std::move(passes_.contours);
+    return plan;
+  }
+
+ private:
+  void add_run(const Passes::Run& run, std::size_t gate, CurveAssembly& assembly) {
+    std::vector<const Contour*> contours;
+    for (const Index c : run.contours) contours.push_back(&passes_.contours[c]);
+    if (gate & 1) std::reverse(contours.begin(), contours.end());
+    if (!run.closed) return add_open(contours, gate & 2, assembly);
+    const auto near = [&] { return assembly.empty() ? position_of(mesh_, contours[0]->points[0]) : assembly.end(); };
+    if (options_.pattern == Pattern::spiral) {
+      assembly.add_stroke(spiral(linker_, function_, contours, near()));
+      return;
+    }
+    for (const Contour* contour : contours) assembly.add_stroke(closed_from(mesh_, *contour, near()));
+  }
+
+  void add_open(const std::vector<const Contour*>& contours, bool from_end, CurveAssembly& assembly) {
+    for (const Contour* contour : contours) {
+      SurfaceCurve stroke = make_curve(mesh_, contour->points);
+      if (from_end) stroke.reverse();
+      assembly.add_stroke(stroke);
+      from_end = !from_end;
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  const SurfaceFunction& function_;
+  const ImpactOptions& options_;
+  Progress& progress_;
+  SurfaceLocator locator_;
+  SmoothNormals normals_;
+  SurfaceLinker linker_;
+  Passes passes_;
+};
+
+}  // namespace
+
+std::string_view name_of(Pattern pattern) {
+  switch (pattern) {
+    case Pattern::contour:
+      return "contour";
+    case Pattern::spiral:
+      return "spiral";
+    case Pattern::meander:
+      return "meander";
+    case Pattern::planar:
+      return "planar";
+  }
+  return "";
+}
+
+void ImpactOptions::validate() const {
+  const auto reject = [](const char* what, const char* element, double value) {
+    throw Error(ErrorCode::bad_usage, what, {.element = element, .value = fmt::format("{}", value)});
+  };
+  if (!(spacing > 0 && std::isfinite(spacing))) reject("must be a positive length in mm", "option spacing", spacing);
+  if (!(clearance >= 0 && std::isfinite(clearance)))
+    reject("must be a length in mm, or 0 for the default", "option clearance", clearance);
+}
+
+ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options,
+                       Progress& progress) {
+  options.validate();
+  return Planner(mesh, function, options, progress).run();
+}
+
+}  // namespace isopath

@@ -1,0 +1,108 @@
+#include "isopath/impact/passes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isopath {
+namespace {
+
+struct Range {
+  double low = infinity;
+  double high = -infinity;
+};
+
+Range finite_range(const TriangleMesh& mesh, const SurfaceFunction& function) {
+  Range range;
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const double value = function.value_at_vertex(v);
+    if (!std::isfinite(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+/// The contours kept, linked over those left out.
+struct Links {
+  std::vector<std::vector<Index>> children;
+  std::vector<std::vector<Index>> parents;
+};
+
+/// Levels alternate: passes at even places, between them half levels. A half-level contour without anything above it
+/// encloses a top that the pass below does not reach: it becomes a pass itself.
+std::vector<char> mark_passes(const ContourSet& set, const std::vector<double>& levels) {
+  std::vector<char> keep(set.contours.size(), 0);
+  for (std::size_t k = 0; k < set.contours.size(); ++k) {
+    const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
+    keep[k] = place % 2 == 0 || set.graph.children[k].empty();
+  }
+  return keep;
+}
+
+Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
+  Links links;
+  links.children.resize(set.contours.size());
+  links.parents.resize(set.contours.size());
+  for (std::size_t k = 0; k < set.contours.size(); ++k) {
+    if (!keep[k]) continue;
+    for (const Index child : set.graph.children[k]) {
+      const auto join = [&](Index c) {
+        auto& children = links.children[k];
+        if (std::find(children.begin(), children.end(), c) != children.end()) return;
+        children.push_back(c);
+        links.parents[c].push_back(static_cast<Index>(k));
+      };
+      if (keep[child]) {
+        join(child);
+      } else {
+        for (const Index grandchild : set.graph.children[child]) {
+          if (keep[grandchild]) join(grandchild);
+        }
+      }
+    }
+  }
+  return links;
+}
+
+}  // namespace
+
+Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
+  Passes passes;
+  const Range range = finite_range(mesh, function);
+  if (!(range.high > range.low)) return passes;
+  const double count = std::max(1.0, std::ceil((range.high - range.low) / spacing - 1e-9));
+  passes.spacing = (range.high - range.low) / count;
+  std::vector<double> levels;
+  for (int k = 1; k < 2 * static_cast<int>(count); ++k) levels.push_back(range.low + 0.5 * k * passes.spacing);
+
+  ContourSet set = contour_set(mesh, function, levels, {.chord_tolerance = 1e-3 * spacing}, progress);
+  const std::vector<char> keep = mark_passes(set, levels);
+  const Links links = link_kept(set, keep);
+
+  std::vector<Index> number(set.contours.size(), no_index);
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    if (!keep[k]) continue;
+    number[k] = static_cast<Index>(passes.contours.size());
+    passes.contours.push_back(std::move(set.contours[k]));
+  }
+  const auto single = [](const std::vector<Index>& list) { return list.size() == 1; };
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    if (!keep[k]) continue;
+    const bool closed = passes.contours[number[k]].closed;
+    const auto continues = [&](Index below, Index above) {
+      return single(links.children[below]) && single(links.parents[above]) &&
+             passes.contours[number[below]].closed == passes.contours[number[above]].closed;
+    };
+    if (single(links.parents[k]) && continues(links.parents[k][0], static_cast<Index>(k))) continue;  // inside a run
+    Passes::Run& run = passes.runs.emplace_back();
+    run.closed = closed;
+    for (auto here = static_cast<Index>(k);;) {
+      run.contours.push_back(number[here]);
+      if (!single(links.children[here]) || !continues(here, links.children[here][0])) break;
+      here = links.children[here][0];
+    }
+  }
+  return passes;
+}
+
+}  // namespace isopath

@@ -1,0 +1,149 @@
+#include "isopath/impact/spiral.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "isopath/impact/strip.h"
+
+namespace isopath {
+namespace {
+
+/// A closed contour made ready for a strip: starting point first, and once more at the end; long chords divided.
+struct Ring {
+  double level = 0;
+  SurfaceCurve curve;
+  std::vector<double> arc;  ///< fraction of the whole length at each point, 0 to 1
+};
+
+/// Points nearer than `shortest` to the last kept one are skipped, chords longer than `longest` divided: a strip needs
+/// rungs that are evenly spread, and no more of them than the spacing asks for.
+Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& start, double shortest, double longest) {
+  const SurfaceCurve all = make_curve(mesh, contour.points);
+  const SurfaceCurve turned = rotated(all, nearest_index(all, start));
+  Ring ring;
+  ring.level = contour.level;
+  double since_kept = 0;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    const std::size_t next = (i + 1) % turned.size();
+    const double chord = (turned.positions[next] - turned.positions[i]).norm();
+    if (i == 0 || since_kept >= shortest) {
+      ring.curve.add(mesh, turned.points[i]);
+      since_kept = 0;
+    }
+    since_kept += chord;
+    const int parts = static_cast<int>(std::ceil(chord / longest));
+    if (parts < 2) continue;
+    // the chord lies in one face: that of either end, or the one both share
+    for (int k = 1; k < parts; ++k) {
+      const double t = static_cast<double>(k) / parts;
+      const SurfacePoint& a = turned.points[i];
+      SurfacePoint between = a;
+      if (a.face == turned.points[next].face) {
+        between.barycentric = (1 - t) * a.barycentric + t * turned.points[next].barycentric;
+        ring.curve.add(mesh, between);
+      }
+    }
+    since_kept = 0;
+  }
+  const SurfacePoint first = ring.curve.points.front();
+  ring.curve.add(mesh, first);
+  ring.arc.assign(1, 0.0);
+  for (std::size_t i = 1; i < ring.curve.size(); ++i) {
+    ring.arc.push_back(ring.arc.back() + (ring.curve.positions[i] - ring.curve.positions[i - 1]).norm());
+  }
+  for (double& a : ring.arc) a /= std::max(ring.arc.back(), 1e-300);
+  return ring;
+}
+
+/// The point between p and q where the function has this level: bisection along the chord, each point moved onto the
+/// surface.
+SurfacePoint point_at_level(const SurfaceLinker& linker, const SurfaceFunction& function, const Vec3& p, const Vec3& q,
+                            double level_p, double level_q, double level) {
+  double low = 0;
+  double high = 1;
+  double f_low = level_p - level;
+  double f_high = level_q - level;
+  SurfacePoint at;
+  for (int step = 0; step < 20; ++step) {
+    double t = f_low == f_high ? 0.5 : f_low / (f_low - f_high);
+    t = low + std::clamp(t, 0.05, 0.95) * (high - low);
+    at = linker.locator().nearest(p + t * (q - p)).at;
+    const double f = function.value(at) - level;
+    if (std::abs(f) <= 1e-4 * std::abs(level_q - level_p)) break;
+    if ((f > 0) == (f_high > 0)) {
+      high = t;
+      f_high = f;
+    } else {
+      low = t;
+      f_low = f;
+    }
+  }
+  return at;
+}
+
+class SpiralBuilder {
+ public:
+  SpiralBuilder(const SurfaceLinker& linker, const SurfaceFunction& function) : linker_(linker), function_(function) {}
+
+  SurfaceCurve take() { return std::move(curve_); }
+
+  /// Walks a contour whole, from its point nearest to a place.
+  void walk_whole(const Contour& contour, const Vec3& from) {
+    const SurfaceCurve ring = closed_from(linker_.mesh(), contour, from);
+    for (const SurfacePoint& point : ring.points) linker_.extend(curve_, point);
+  }
+
+  Vec3 end() const { return curve_.positions.back(); }
+
+  /// One turn from the contour the curve has come to, to the next one.
+  bool turn(const Contour& from, const Contour& to, int splits) {
+    const double gap = std::abs(to.level - from.level);
+    const double shortest = 0.15 * gap;
+    const double longest = 0.5 * gap;
+    const Ring p = make_ring(linker_.mesh(), from, end(), shortest, longest);
+    const Ring q = make_ring(linker_.mesh(), to, end(), shortest, longest);
+    const Strip strip = least_strip(p.curve.positions, q.curve.positions, gap, 6 * gap);
+    if (strip.empty()) return splits > 0 && turn_in_two(from, to, splits - 1);
+    for (const auto& [i, j] : strip) {
+      const double share = 0.5 * (p.arc[i] + q.arc[j]);
+      if (share <= 0) continue;
+      if (share >= 1) break;
+      const double level = (1 - share) * p.level + share * q.level;
+      linker_.extend(curve_, point_at_level(linker_, function_, p.curve.positions[i], q.curve.positions[j], p.level,
+                                            q.level, level));
+    }
+    linker_.extend(curve_, q.curve.points.front());
+    return true;
+  }
+
+ private:
+  bool turn_in_two(const Contour& from, const Contour& to, int splits) {
+    const double level = 0.5 * (from.level + to.level);
+    for (const Contour& middle : isolines(linker_.mesh(), function_, std::span(&level, 1))) {
+      if (!middle.closed) continue;
+      const SurfaceCurve before = curve_;
+      if (turn(from, middle, splits) && turn(middle, to, splits)) return true;
+      curve_ = before;
+    }
+    return false;
+  }
+
+  const SurfaceLinker& linker_;
+  const SurfaceFunction& function_;
+  SurfaceCurve curve_;
+};
+
+}  // namespace
+
+SurfaceCurve spiral(const SurfaceLinker& linker, const SurfaceFunction& function,
+                    std::span<const Contour* const> contours, const Vec3& start) {
+  SpiralBuilder builder(linker, function);
+  builder.walk_whole(*contours.front(), start);
+  for (std::size_t k = 1; k < contours.size(); ++k) {
+    if (!builder.turn(*contours[k - 1], *contours[k], 2)) builder.walk_whole(*contours[k], builder.end());
+  }
+  if (contours.size() > 1) builder.walk_whole(*contours.back(), builder.end());
+  return builder.take();
+}
+
+}  // namespace isopath

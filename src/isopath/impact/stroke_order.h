@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "isopath/core/geometry.h"
+
+namespace isopath {
+
+/// A way through a run of passes: where it can be entered, and where the curve then comes out.
+struct Gate {
+  std::vector<Vec3> entry;  ///< any of these points: a single end of an open pass, or samples of a closed one
+  std::vector<Vec3> exit;
+};
+
+/// The run to do next and the gate to enter it by.
+struct Visit {
+  std::size_t run = 0;
+  std::size_t gate = 0;
+};
+
+/// An order of runs, and a gate for each, with short ways between them: nearest neighbour from every possible start,
+/// the best kept. Ways longer than `longest_link` cost `lift_cost` more, as the tool has to leave the surface.
+std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost);
+
+}  // namespace isopath

@@ -1,0 +1,88 @@
+#include "isopath/impact/surface_curve.h"
+
+#include <algorithm>
+
+#include "isopath/field/exact_field.h"
+#include "isopath/mesh/surface_walk.h"
+
+namespace isopath {
+
+void SurfaceCurve::add(const TriangleMesh& mesh, const SurfacePoint& point) {
+  points.push_back(point);
+  positions.push_back(position_of(mesh, point));
+}
+
+void SurfaceCurve::reverse() {
+  std::reverse(points.begin(), points.end());
+  std::reverse(positions.begin(), positions.end());
+}
+
+SurfaceCurve make_curve(const TriangleMesh& mesh, std::vector<SurfacePoint> points) {
+  SurfaceCurve curve;
+  curve.points = std::move(points);
+  curve.positions.reserve(curve.points.size());
+  for (const SurfacePoint& point : curve.points) curve.positions.push_back(position_of(mesh, point));
+  return curve;
+}
+
+double length_of(const SurfaceCurve& curve) {
+  double sum = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) sum += (curve.positions[i] - curve.positions[i - 1]).norm();
+  return sum;
+}
+
+std::size_t nearest_index(const SurfaceCurve& curve, const Vec3& place) {
+  std::size_t best = 0;
+  double least = infinity;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const double d = (curve.positions[i] - place).squaredNorm();
+    if (d < least) {
+      least = d;
+      best = i;
+    }
+  }
+  return best;
+}
+
+SurfaceCurve rotated(const SurfaceCurve& closed, std::size_t start) {
+  SurfaceCurve curve = closed;
+  std::rotate(curve.points.begin(), curve.points.begin() + start, curve.points.end());
+  std::rotate(curve.positions.begin(), curve.positions.begin() + start, curve.positions.end());
+  return curve;
+}
+
+SurfaceCurve closed_from(const TriangleMesh& mesh, const Contour& contour, const Vec3& place) {
+  const SurfaceCurve all = make_curve(mesh, contour.points);
+  SurfaceCurve curve = rotated(all, nearest_index(all, place));
+  const SurfacePoint first = curve.points.front();
+  curve.add(mesh, first);
+  return curve;
+}
+
+std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const SurfacePoint& to,
+                                                double longest) const {
+  if ((position_of(mesh_, to) - position_of(mesh_, from)).norm() > longest) return std::nullopt;
+  if (common_face(mesh_, from, to) != no_index) return make_curve(mesh_, {from, to});
+  auto walk = surface_walk(mesh_, from, to);
+  if (!walk.empty()) {
+    SurfaceCurve curve = make_curve(mesh_, std::move(walk));
+    if (length_of(curve) <= longest) return curve;
+  }
+  SourceSet source;
+  source.add_point(from);
+  const ExactField field = ExactField::compute(mesh_, source, {.stop_distance = longest});
+  if (field.value(to) > longest) return std::nullopt;
+  SurfaceCurve path = make_curve(mesh_, field.shortest_path(to));
+  path.reverse();
+  return path;
+}
+
+void SurfaceLinker::extend(SurfaceCurve& curve, const SurfacePoint& to) const {
+  if (curve.empty()) return curve.add(mesh_, to);
+  const double straight = (position_of(mesh_, to) - curve.positions.back()).norm();
+  const auto way = link(curve.points.back(), to, 4 * straight + mesh_.tolerance().length);
+  if (!way) return curve.add(mesh_, to);
+  for (std::size_t i = 1; i < way->size(); ++i) curve.add(mesh_, way->points[i]);
+}
+
+}  // namespace isopath
