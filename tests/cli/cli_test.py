@@ -124,6 +124,18 @@ class Field(Program):
         for (x, y, _), d in zip(self.vertices, self.distances("--source", "plane:1,0,0,33", "--source", "point:80,50,7")):
             self.assertAlmostEqual(d, min(abs(x - 33), math.hypot(x - 80, y - 50)), delta=1e-10)
 
+    def test_a_broken_part_is_repaired_and_the_changes_are_said(self):
+        broken, out = self.path("broken.off"), self.path("d.csv")
+        # The second triangle is the wrong way round, the last is there twice.
+        self.write(broken, "OFF\n5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n3 0 1 2\n3 0 3 2\n3 1 4 2\n3 1 4 2\n")
+        result = run("field", broken, "--source", "vertex:0", "-o", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertIn("isopath: warning: repaired: ", result.stderr)
+        self.assertEqual(len([w for w in json.loads(result.stdout)["warnings"] if w.startswith("repaired: ")]), 2)
+        distances = [float(line) for line in self.read(out).decode().splitlines()]
+        for d, expected in zip(distances, [0, 1, math.sqrt(2), 1, 2]):
+            self.assertAlmostEqual(d, expected)
+
     def test_units_are_converted(self):
         self.assertAlmostEqual(max(self.distances("--source", "vertex:0", "--unit", "cm")), 10 * math.hypot(80, 50))
 
