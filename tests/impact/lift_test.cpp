@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -31,11 +31,11 @@ void expect_clear(const SurfaceLocator& surface, const LiftPath& path, const Vec
 
 /// A plate [0, 20] × [0, 10] with a wall of the given height between x = 9.5 and x = 10.5.
 TriangleMesh plate_with_wall(double height) {
-  return shapes::graph(40, 4, 20, 10, [=](double x, double) { return std::abs(x - 10) < 0.3 ? height : 0.0; });
+  return test::height_grid(40, 4, 20, 10, [=](double x, double) { return std::abs(x - 10) < 0.3 ? height : 0.0; });
 }
 
 TEST(Lift, OverFlatGroundItRetractsHopsAndComesDown) {
-  const TriangleMesh mesh = shapes::plane(4, 4, 20, 20);
+  const TriangleMesh mesh = test::planar_grid(4, 4, 20, 20);
   const LiftPath path =
       lift_between(SurfaceLocator(mesh), mesh.bounds(), {2, 2, 0}, Vec3::UnitZ(), {12, 2, 0}, Vec3::UnitZ(), 3);
   EXPECT_TRUE(path.clear);
@@ -62,7 +62,7 @@ TEST(Lift, ClimbsOverAWall) {
 }
 
 TEST(Lift, GoesAroundASphere) {
-  const TriangleMesh mesh = shapes::sphere(4, 10);
+  const TriangleMesh mesh = test::icosphere(4, 10);
   const SurfaceLocator surface(mesh);
   for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(-1, 0.1, 0)}) {
     for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.4, 0.2, -0.1)}) {
@@ -81,7 +81,7 @@ TEST(Lift, GoesAroundASphere) {
 
 TEST(Lift, FindsTheOpeningOfAPocket) {
   // A box turned inside out, without its lid: x, y in [-5, 5], floor at z = -10; q outside beside it, below the rim.
-  TriangleSoup soup = shapes::box({-5, -5, -10}, {5, 5, 0}).soup();
+  TriangleSoup soup = test::box({-5, -5, -10}, {5, 5, 0}).soup();
   std::erase_if(soup.triangles, [&](const Triangle& t) {
     return soup.positions[t[0]].z() == 0 && soup.positions[t[1]].z() == 0 && soup.positions[t[2]].z() == 0;
   });
@@ -101,7 +101,7 @@ TEST(Lift, FindsTheOpeningOfAPocket) {
 }
 
 TEST(Lift, SaysWhenNoClearWayIsKnown) {
-  const TriangleMesh mesh = shapes::sphere(3, 10);
+  const TriangleMesh mesh = test::icosphere(3, 10);
   const LiftPath path =
       lift_between(SurfaceLocator(mesh), mesh.bounds(), {0, 0, 0}, Vec3::UnitZ(), {0, 0, 20}, Vec3::UnitZ(), 1);
   EXPECT_FALSE(path.clear);
@@ -109,7 +109,7 @@ TEST(Lift, SaysWhenNoClearWayIsKnown) {
 }
 
 TEST(Lift, RefusesAClearanceThatIsNone) {
-  const TriangleMesh mesh = shapes::plane(1, 1, 1, 1);
+  const TriangleMesh mesh = test::planar_grid(1, 1, 1, 1);
   const SurfaceLocator surface(mesh);
   for (const double clearance : {0.0, -1.0, std::nan(""), infinity}) {
     EXPECT_THROW(lift_between(surface, mesh.bounds(), {0, 0, 0}, Vec3::UnitZ(), {1, 1, 0}, Vec3::UnitZ(), clearance),

@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -28,25 +28,25 @@ double worst_error(const TriangleMesh& mesh, const std::function<Vec2(const Vec3
 
 TEST(Curvature, TheOutsideOfABallIsConvexThatIsNegative) {
   const auto truth = [](const Vec3&) { return Vec2(-0.2, -0.2); };
-  const double coarse = worst_error(shapes::sphere(3, 5), truth);
-  const double fine = worst_error(shapes::sphere(4, 5), truth);
+  const double coarse = worst_error(test::icosphere(3, 5), truth);
+  const double fine = worst_error(test::icosphere(4, 5), truth);
   EXPECT_LT(coarse, 0.02);
   EXPECT_LT(fine, coarse / 3);
 }
 
 TEST(Curvature, TheInsideOfABallIsConcaveThatIsPositive) {
-  TriangleSoup soup = shapes::sphere(4, 5).soup();
+  TriangleSoup soup = test::icosphere(4, 5).soup();
   for (Triangle& t : soup.triangles) std::swap(t[1], t[2]);
   EXPECT_LT(worst_error(TriangleMesh(std::move(soup)), [](const Vec3&) { return Vec2(0.2, 0.2); }), 0.005);
 }
 
 TEST(Curvature, CylinderHasItsRadiusAcrossAndNothingAlong) {
   const auto truth = [](const Vec3&) { return Vec2(0, -0.1); };
-  const double coarse = worst_error(shapes::cylinder(40, 10, 10, 20), truth);
-  const double fine = worst_error(shapes::cylinder(80, 20, 10, 20), truth);
+  const double coarse = worst_error(test::open_cylinder(40, 10, 10, 20), truth);
+  const double fine = worst_error(test::open_cylinder(80, 20, 10, 20), truth);
   EXPECT_LT(coarse, 0.01);
   EXPECT_LT(fine, coarse / 1.8);
-  const TriangleMesh mesh = shapes::cylinder(80, 20, 10, 20);
+  const TriangleMesh mesh = test::open_cylinder(80, 20, 10, 20);
   for (const PrincipalCurvatures& k : principal_curvatures(mesh, SmoothNormals(mesh))) {
     EXPECT_NEAR(std::abs(k.max_direction.z()), 1, 0.01);
     EXPECT_NEAR(k.along(Vec3::UnitZ()), k.max, 1e-3);
@@ -55,13 +55,13 @@ TEST(Curvature, CylinderHasItsRadiusAcrossAndNothingAlong) {
 
 TEST(Curvature, CylinderOfLongSliversIsStillACylinder) {
   // Strips 30 times as long as wide, as CAD systems cut a cylinder.
-  EXPECT_LT(worst_error(shapes::cylinder(60, 1, 10, 30), [](const Vec3&) { return Vec2(0, -0.1); }), 2e-3);
+  EXPECT_LT(worst_error(test::open_cylinder(60, 1, 10, 30), [](const Vec3&) { return Vec2(0, -0.1); }), 2e-3);
 }
 
 TEST(Curvature, SaddleBendsBothWays) {
   const auto saddle = [](int n) {
-    return shapes::graph(n, n, 2, 2,
-                         [](double x, double y) { return 0.3 * (x - 1) * (x - 1) - 0.2 * (y - 1) * (y - 1); });
+    return test::height_grid(n, n, 2, 2,
+                             [](double x, double y) { return 0.3 * (x - 1) * (x - 1) - 0.2 * (y - 1) * (y - 1); });
   };
   // The graph z = f has H = second derivatives / sqrt(1 + |grad|²) relative to I + grad gradᵀ.
   const auto truth = [](const Vec3& p) {
@@ -85,14 +85,14 @@ TEST(Curvature, TorusConverges) {
     const double around = -(rho - 10) / 3 / rho;
     return Vec2(std::max(around, -1.0 / 3), std::min(around, -1.0 / 3));
   };
-  const double coarse = worst_error(shapes::torus(60, 30, 10, 3), truth);
-  const double fine = worst_error(shapes::torus(120, 60, 10, 3), truth);
+  const double coarse = worst_error(test::torus(60, 30, 10, 3), truth);
+  const double fine = worst_error(test::torus(120, 60, 10, 3), truth);
   EXPECT_LT(coarse, 0.03);
   EXPECT_LT(fine, coarse / 3);
 }
 
 TEST(Curvature, CreasesDoNotMakeACubeRound) {
-  const TriangleMesh mesh = shapes::box({0, 0, 0}, {1, 2, 3});
+  const TriangleMesh mesh = test::box({0, 0, 0}, {1, 2, 3});
   for (const PrincipalCurvatures& k : principal_curvatures(mesh, SmoothNormals(mesh))) {
     EXPECT_NEAR(k.max, 0, 1e-12);
     EXPECT_NEAR(k.min, 0, 1e-12);
@@ -101,7 +101,7 @@ TEST(Curvature, CreasesDoNotMakeACubeRound) {
 
 TEST(Curvature, ScalesWithTheInverseOfTheSize) {
   for (const double size : {1e-6, 1e6}) {
-    TriangleSoup soup = shapes::torus(30, 15, 10, 3).soup();
+    TriangleSoup soup = test::torus(30, 15, 10, 3).soup();
     const TriangleMesh mesh(soup);
     for (Vec3& p : soup.positions) p *= size;
     const TriangleMesh scaled(soup);

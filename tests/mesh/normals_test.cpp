@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "isopath/core/error.h"
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -17,7 +17,7 @@ const std::array<Vec3, 4> samples = {Vec3(1, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.2,
 
 /// Largest difference between the smooth normal and the true one of a sphere about the origin.
 double sphere_error(int level) {
-  const TriangleMesh mesh = shapes::sphere(level, 5);
+  const TriangleMesh mesh = test::icosphere(level, 5);
   const SmoothNormals normals(mesh);
   double worst = 0;
   for (Index f = 0; f < mesh.n_faces(); ++f) {
@@ -35,12 +35,12 @@ TEST(SmoothNormals, DefaultCreaseAngleIsFortyDegrees) {
 }
 
 TEST(SmoothNormals, RefuseAnAngleThatIsNone) {
-  EXPECT_THROW(SmoothNormals(shapes::plane(1, 1, 1, 1), {.crease_angle = -0.1}), Error);
-  EXPECT_THROW(SmoothNormals(shapes::plane(1, 1, 1, 1), {.crease_angle = std::nan("")}), Error);
+  EXPECT_THROW(SmoothNormals(test::planar_grid(1, 1, 1, 1), {.crease_angle = -0.1}), Error);
+  EXPECT_THROW(SmoothNormals(test::planar_grid(1, 1, 1, 1), {.crease_angle = std::nan("")}), Error);
 }
 
 TEST(SmoothNormals, APlaneHasOneNormal) {
-  const TriangleMesh mesh = shapes::plane(5, 3, 10, 4);
+  const TriangleMesh mesh = test::planar_grid(5, 3, 10, 4);
   const SmoothNormals normals(mesh);
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     for (const Vec3& b : samples) EXPECT_LT((normals.at({f, b}) - Vec3::UnitZ()).norm(), 1e-15);
@@ -57,7 +57,7 @@ TEST(SmoothNormals, ErrorOnASphereShrinksWithTheEdge) {
 }
 
 TEST(SmoothNormals, ACubeKeepsItsFaceNormalsUpToTheEdges) {
-  const TriangleMesh mesh = shapes::box({-1, -1, -1}, {1, 2, 3});
+  const TriangleMesh mesh = test::box({-1, -1, -1}, {1, 2, 3});
   const SmoothNormals normals(mesh);
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     for (const Vec3& b : samples) EXPECT_LT((normals.at({f, b}) - mesh.face_normal(f)).norm(), 1e-15);
@@ -66,7 +66,7 @@ TEST(SmoothNormals, ACubeKeepsItsFaceNormalsUpToTheEdges) {
 
 TEST(SmoothNormals, WithoutCreasesACubeCornerPointsAlongTheDiagonal) {
   // Each side has a right angle at the corner, however it is cut: the angle-weighted mean is the diagonal.
-  const TriangleMesh mesh = shapes::box({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh mesh = test::box({0, 0, 0}, {1, 1, 1});
   const SmoothNormals normals(mesh, {.crease_angle = std::numbers::pi});
   for (Index v = 0; v < 8; ++v) {
     const Vec3 diagonal = (mesh.position(v) - Vec3::Constant(0.5)).normalized();
@@ -77,7 +77,7 @@ TEST(SmoothNormals, WithoutCreasesACubeCornerPointsAlongTheDiagonal) {
 TEST(SmoothNormals, ARidgeIsSmoothedUpToTheCreaseAngle) {
   for (const double ridge : {39.0, 41.0}) {
     const double slope = std::tan(ridge / 2 * std::numbers::pi / 180);
-    const TriangleMesh mesh = shapes::graph(4, 4, 4, 4, [&](double x, double) { return -slope * std::abs(x - 2); });
+    const TriangleMesh mesh = test::height_grid(4, 4, 4, 4, [&](double x, double) { return -slope * std::abs(x - 2); });
     const SmoothNormals normals(mesh);
     for (Index h = 0; h < mesh.n_halfedges(); ++h) {
       if (mesh.position(mesh.from(h)).x() != 2) continue;

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "isopath/core/error.h"
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -51,7 +51,7 @@ void expect_same_surface(const TriangleMesh& old, const RefinedMesh& fine) {
 }
 
 TEST(Refine, UniformSplitMakesFourOfEachAndKeepsTheSurface) {
-  for (const TriangleMesh& mesh : {shapes::sphere(2, 3), shapes::torus(9, 7, 5, 2), shapes::cylinder(8, 3, 2, 5)}) {
+  for (const TriangleMesh& mesh : {test::icosphere(2, 3), test::torus(9, 7, 5, 2), test::open_cylinder(8, 3, 2, 5)}) {
     const RefinedMesh fine = split_uniformly(mesh);
     EXPECT_EQ(fine.mesh.n_faces(), 4 * mesh.n_faces());
     EXPECT_EQ(fine.mesh.n_vertices(), mesh.n_vertices() + mesh.n_edges());
@@ -61,7 +61,7 @@ TEST(Refine, UniformSplitMakesFourOfEachAndKeepsTheSurface) {
 }
 
 TEST(Refine, RandomMarksGiveAConformingMesh) {
-  const TriangleMesh mesh = shapes::graph(9, 8, 9, 8, [](double x, double y) { return std::sin(x) * std::cos(y); });
+  const TriangleMesh mesh = test::height_grid(9, 8, 9, 8, [](double x, double y) { return std::sin(x) * std::cos(y); });
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937_64 random(seed);
@@ -74,7 +74,7 @@ TEST(Refine, RandomMarksGiveAConformingMesh) {
 }
 
 TEST(Refine, AnglesStayBoundedHoweverDeepItGoesAroundAPoint) {
-  const TriangleMesh mesh = shapes::plane(3, 3, 3, 3);
+  const TriangleMesh mesh = test::planar_grid(3, 3, 3, 3);
   const Vec2 centre(1.3, 1.6);
   const auto around = [&](const RefineTriangle& t) {
     for (int i = 0; i < 3; ++i) {
@@ -97,7 +97,7 @@ TEST(Refine, AnglesStayBoundedHoweverDeepItGoesAroundAPoint) {
 }
 
 TEST(Refine, WithoutWishesNothingChanges) {
-  const TriangleMesh mesh = shapes::torus(6, 5, 4, 1);
+  const TriangleMesh mesh = test::torus(6, 5, 4, 1);
   const RefinedMesh same = refine(
       mesh, [](const RefineTriangle&) { return false; }, 3);
   EXPECT_EQ(same.mesh.soup().triangles, mesh.soup().triangles);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -93,7 +93,7 @@ TEST(SurfaceLocator, NearestAgreesWithBruteForceAtEverySize) {
 }
 
 TEST(SurfaceLocator, PointsOfTheSurfaceAreAtDistanceZero) {
-  const TriangleMesh mesh = shapes::torus(30, 20, 10, 3);
+  const TriangleMesh mesh = test::torus(30, 20, 10, 3);
   const SurfaceLocator locator(mesh);
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
     const NearestPoint found = locator.nearest(mesh.position(v));
@@ -112,7 +112,7 @@ TEST(SurfaceLocator, PointsOfTheSurfaceAreAtDistanceZero) {
 }
 
 TEST(SurfaceLocator, MaximumDistanceIsALimit) {
-  const TriangleMesh mesh = shapes::plane(4, 4, 1, 1);
+  const TriangleMesh mesh = test::planar_grid(4, 4, 1, 1);
   const SurfaceLocator locator(mesh);
   EXPECT_FALSE(locator.nearest({0.4, 0.4, 2}, 1.999).at.valid());
   EXPECT_EQ(locator.nearest({0.4, 0.4, 2}, 1.999).distance, infinity);
@@ -123,7 +123,7 @@ TEST(SurfaceLocator, EmptyMeshAndNonsenseHaveNoAnswer) {
   const SurfaceLocator empty{TriangleMesh()};
   EXPECT_FALSE(empty.nearest({0, 0, 0}).at.valid());
   EXPECT_FALSE(empty.intersects({0, 0, 0}, {1, 1, 1}));
-  const SurfaceLocator locator(shapes::plane(1, 1, 1, 1));
+  const SurfaceLocator locator(test::planar_grid(1, 1, 1, 1));
   EXPECT_FALSE(locator.nearest({std::nan(""), 0, 0}).at.valid());
   EXPECT_FALSE(locator.intersects({0.3, 0.3, 1}, {0.3, 0.3, -infinity}));
 }
@@ -193,7 +193,7 @@ TEST(SurfaceLocator, FirstHitAgreesWithBruteForce) {
 }
 
 TEST(SurfaceLocator, NoSegmentSlipsThroughEdgesAndVertices) {
-  const TriangleMesh mesh = shapes::sphere(3, 1);
+  const TriangleMesh mesh = test::icosphere(3, 1);
   const SurfaceLocator locator(mesh);
   std::mt19937_64 random(7);
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
@@ -209,7 +209,7 @@ TEST(SurfaceLocator, NoSegmentSlipsThroughEdgesAndVertices) {
 }
 
 TEST(SurfaceLocator, SegmentsAlongTheAxesMeetAnAxisParallelBox) {
-  const SurfaceLocator locator(shapes::box({0, 0, 0}, {1, 1, 1}));
+  const SurfaceLocator locator(test::box({0, 0, 0}, {1, 1, 1}));
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 centre = Vec3::Constant(0.5);
     const Vec3 out = centre + 2 * Vec3::Unit(axis);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "isopath/mesh/surface_locator.h"
-#include "support/shapes.h"
+#include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
@@ -53,7 +53,7 @@ void expect_valid(const TriangleMesh& mesh, const std::vector<SurfacePoint>& way
 }
 
 TEST(SurfaceWalk, OnAPlaneItIsTheStraightLine) {
-  const TriangleMesh mesh = shapes::plane(7, 5, 14, 10);
+  const TriangleMesh mesh = test::planar_grid(7, 5, 14, 10);
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::mt19937_64 random(seed);
@@ -70,7 +70,7 @@ TEST(SurfaceWalk, OnAPlaneItIsTheStraightLine) {
 }
 
 TEST(SurfaceWalk, RunsAlongEdgesAndThroughVertices) {
-  const TriangleMesh mesh = shapes::plane(4, 4, 4, 4);
+  const TriangleMesh mesh = test::planar_grid(4, 4, 4, 4);
   // Along a grid line: from a vertex through three vertices to a vertex.
   const auto along = surface_walk(mesh, point_at_vertex(mesh, 5), point_at_vertex(mesh, 9));
   ASSERT_EQ(along.size(), 5u);
@@ -86,7 +86,7 @@ TEST(SurfaceWalk, RunsAlongEdgesAndThroughVertices) {
 }
 
 TEST(SurfaceWalk, HitsVerticesExactlyInSpiteOfRounding) {
-  const TriangleMesh flat = shapes::plane(30, 30, 30, 30);
+  const TriangleMesh flat = test::planar_grid(30, 30, 30, 30);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> part(-1, 1);
@@ -102,7 +102,7 @@ TEST(SurfaceWalk, HitsVerticesExactlyInSpiteOfRounding) {
 }
 
 TEST(SurfaceWalk, OnACylinderItLiesInThePlaneOfBothPointsAndTheirMeanNormal) {
-  const TriangleMesh mesh = shapes::cylinder(90, 20, 10, 30);
+  const TriangleMesh mesh = test::open_cylinder(90, 20, 10, 30);
   const SurfaceLocator locator(mesh);
   for (const double angle : {0.2, 0.5, 1.0}) {
     const auto at = [&](double phi, double z) { return Vec3(10 * std::cos(phi), 10 * std::sin(phi), z); };
@@ -121,7 +121,7 @@ TEST(SurfaceWalk, OnACylinderItLiesInThePlaneOfBothPointsAndTheirMeanNormal) {
 
 TEST(SurfaceWalk, NearbyPairsOnABumpySurfaceAreJoined) {
   const TriangleMesh mesh =
-      shapes::graph(60, 60, 10, 10, [](double x, double y) { return 0.5 * std::sin(2 * x) * std::cos(1.7 * y); });
+      test::height_grid(60, 60, 10, 10, [](double x, double y) { return 0.5 * std::sin(2 * x) * std::cos(1.7 * y); });
   const SurfaceLocator locator(mesh);
   int joined = 0;
   constexpr int pairs = 4000;
@@ -143,7 +143,7 @@ TEST(SurfaceWalk, NearbyPairsOnABumpySurfaceAreJoined) {
 
 TEST(SurfaceWalk, SliversAndPointsWithoutAreaDoNotHoldItUp) {
   // Columns of very different widths, the narrow ones 1e-9 wide.
-  TriangleMesh mesh = shapes::graph(40, 8, 40, 8, [](double x, double) { return 0.05 * x; });
+  TriangleMesh mesh = test::height_grid(40, 8, 40, 8, [](double x, double) { return 0.05 * x; });
   TriangleSoup soup = mesh.soup();
   for (Vec3& p : soup.positions) p.x() = std::floor(p.x() / 4) * 4 + 1e-9 * std::fmod(p.x(), 4);
   for (Vec3& p : soup.positions) p.z() = 0.05 * p.x();
@@ -165,7 +165,7 @@ TEST(SurfaceWalk, SliversAndPointsWithoutAreaDoNotHoldItUp) {
 
 TEST(SurfaceWalk, GivesUpWhereThereIsNoWay) {
   // Two sheets one above the other, not joined.
-  TriangleSoup soup = shapes::plane(3, 3, 3, 3).soup();
+  TriangleSoup soup = test::planar_grid(3, 3, 3, 3).soup();
   const TriangleSoup lower = soup;
   const auto n = static_cast<Index>(soup.positions.size());
   for (const Vec3& p : lower.positions) soup.positions.push_back(p + Vec3(0.1, 0.2, 1));
@@ -176,7 +176,7 @@ TEST(SurfaceWalk, GivesUpWhereThereIsNoWay) {
 }
 
 TEST(SurfaceWalk, PointsOfOneFaceAreJoinedDirectly) {
-  const TriangleMesh mesh = shapes::plane(2, 2, 2, 2);
+  const TriangleMesh mesh = test::planar_grid(2, 2, 2, 2);
   const SurfacePoint vertex = point_at_vertex(mesh, 4);
   const auto way = surface_walk(mesh, vertex, {0, Vec3(0.2, 0.3, 0.5)});
   EXPECT_EQ(way.size(), 2u);

@@ -36,6 +36,7 @@ TEST(TestMeshes, ClosedShapesHaveTheirTopologyAndLookOutwards) {
   EXPECT_EQ(euler(icosphere(2, 1)), 2);
   EXPECT_EQ(euler(torus(12, 8, 3, 1)), 0);
   EXPECT_NEAR(volume(cube(3, 2)), 8, 1e-12);
+  EXPECT_NEAR(volume(box({-1, 0, 1}, {1, 3, 2})), 6, 1e-12);
   EXPECT_NEAR(volume(tetrahedron(1)), 1 / (6 * std::sqrt(2)), 1e-12);
   EXPECT_NEAR(volume(icosphere(3, 2)), 32 * std::numbers::pi / 3, 0.5);
   EXPECT_NEAR(volume(closed_pyramid(4, 1, 3)), 2, 1e-12);
@@ -45,6 +46,7 @@ TEST(TestMeshes, ClosedShapesHaveTheirTopologyAndLookOutwards) {
 TEST(TestMeshes, AreasAreTheirs) {
   EXPECT_NEAR(planar_grid(7, 5, 3, 2, {.jitter = 0.24}).area(), 6, 1e-12);
   EXPECT_NEAR(planar_grid(7, 5, 3, 2, {.diagonal = Diagonal::union_jack}).area(), 6, 1e-12);
+  EXPECT_NEAR(height_grid(7, 5, 3, 2, [](double x, double) { return x; }).area(), 6 * std::sqrt(2), 1e-12);
   EXPECT_NEAR(l_shape(2).area(), 12, 1e-12);
   EXPECT_NEAR(notched_square(5).area(), 21, 1e-12);
   EXPECT_NEAR(planar_star(5, 2, 1).area(), 10 * std::sin(std::numbers::pi / 5), 1e-12);

@@ -94,6 +94,13 @@ TriangleMesh planar_grid(int nx, int ny, double width, double height, const Grid
   return TriangleMesh(grid_soup(nx, ny, width, height, options));
 }
 
+TriangleMesh height_grid(int nx, int ny, double width, double depth,
+                         const std::function<double(double, double)>& height) {
+  TriangleSoup soup = grid_soup(nx, ny, width, depth, {});
+  for (Vec3& p : soup.positions) p.z() = height(p.x(), p.y());
+  return TriangleMesh(std::move(soup));
+}
+
 TriangleMesh planar_cells(int nx, int ny, const std::function<bool(int, int)>& keep) {
   TriangleSoup soup = grid_soup(nx, ny, nx, ny, {});
   std::vector<Triangle> kept;
@@ -204,6 +211,12 @@ TriangleMesh cube(int n, double edge) {
       }
     }
   }
+  return TriangleMesh(std::move(soup));
+}
+
+TriangleMesh box(const Vec3& low, const Vec3& high) {
+  TriangleSoup soup = cube(1, 1).soup();
+  for (Vec3& p : soup.positions) p = low + (high - low).cwiseProduct(p);
   return TriangleMesh(std::move(soup));
 }
 

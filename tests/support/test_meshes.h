@@ -25,6 +25,9 @@ struct GridOptions {
 
 /// Rectangle [0, width] x [0, height] in the plane z = 0 of nx by ny cells; vertex (i, j) has index j (nx + 1) + i.
 TriangleMesh planar_grid(int nx, int ny, double width, double height, const GridOptions& options = {});
+/// The graph z = height(x, y) over the same rectangle and with the same vertices.
+TriangleMesh height_grid(int nx, int ny, double width, double depth,
+                         const std::function<double(double, double)>& height);
 /// The cells of a planar grid of unit squares that `keep(i, j)` names; unused vertices are left out.
 TriangleMesh planar_cells(int nx, int ny, const std::function<bool(int, int)>& keep);
 /// Square of side 2 n without its upper right quarter; the reflex corner is at (n, n).
@@ -49,6 +52,8 @@ TriangleMesh closed_pyramid(int n, double radius, double height);
 TriangleMesh tetrahedron(double edge);
 /// Surface of the cube [0, edge]^3, n by n cells a face.
 TriangleMesh cube(int n, double edge);
+/// Axis-parallel box of 12 triangles.
+TriangleMesh box(const Vec3& low, const Vec3& high);
 /// n (even) triangles around vertex 0, whose rim is alternately `amplitude` above and below it: angle above 2 pi.
 TriangleMesh saddle_cone(int n, double radius, double amplitude);
 TriangleMesh icosphere(int level, double radius);
