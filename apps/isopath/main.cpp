@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
 
   CommonFlags flags;
   Action action;
+  add_plan(app, flags, action);
+  add_check(app, flags, action);
   add_field(app, flags, action);
   add_contours(app, flags, action);
   add_export(app, flags, action);

@@ -2,6 +2,6 @@
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli_test.py $<TARGET_FILE:isopath_app>
-                            contours,export,field)
+                            check,contours,export,field,plan)
   set_tests_properties(cli PROPERTIES TIMEOUT 600 LABELS cli)
 endif()

@@ -186,6 +186,88 @@ class Contours(Program):
         self.assert_refused(run("contours", self.plane, "--spacing", 1e-9, "-o", out), USAGE, "--spacing", "or more")
 
 
+class Check(Program):
+    def test_describes_a_plane(self):
+        result = run("check", self.plane, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual((report["triangles"], report["vertices"], report["components"]), (80, 54, 1))
+        self.assertAlmostEqual(report["area"], 4000)
+        self.assertEqual(len(report["boundary_loops"]), 1)
+        self.assertAlmostEqual(report["boundary_loops"][0]["length"], 260)
+        self.assertTrue(report["sound"])
+        self.assertIn("ready to plan on", run("check", self.plane).stdout)
+
+    def test_repairs_on_request(self):
+        broken, mended = self.path("broken.off"), self.path("mended.off")
+        # The second triangle is the wrong way round, the third is there twice.
+        self.write(broken, "OFF\n5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n3 0 1 2\n3 0 3 2\n3 1 4 2\n3 1 4 2\n")
+        before = run("check", broken, "--repair", "-o", mended, "--json")
+        self.assertEqual(before.returncode, OK, before.stderr)
+        report = json.loads(before.stdout)
+        self.assertFalse(report["sound"])
+        self.assertIn("duplicate_triangle", [defect["kind"] for defect in report["defects"]])
+        self.assertTrue(report["changes"])
+        self.assertTrue(json.loads(run("check", mended, "--json").stdout)["sound"])
+        self.assertEqual(run("check", broken, "--repair").returncode, USAGE)
+
+
+class Plan(Program):
+    PARTS = ["summary.json", "impact.csv", "tool.csv", "path.vtp", "job.yaml", "report.html"]
+
+    def plan(self, *arguments):
+        result = run("plan", *arguments)
+        self.assertEqual(result.returncode, OK, result.stderr)
+        return result
+
+    def test_writes_everything_and_reports_it(self):
+        out = self.path("out")
+        result = self.plan(self.plane, "--source", "plane:1,0,0,0", "--spacing", 4, "-o", out, "--json")
+        for name in self.PARTS:
+            self.assertIn(name, os.listdir(out))
+        self.assertTrue(any(name.startswith("program_") for name in os.listdir(out)))
+        summary = json.loads(result.stdout)
+        self.assertEqual(summary, json.loads(self.read(os.path.join(out, "summary.json"))))
+        self.assertAlmostEqual(summary["area"], 80 * 50)
+        self.assertEqual(summary["spacing"], 4)
+        self.assertAlmostEqual(summary["length_ratio"], summary["cover_length"] * 4 / (80 * 50))
+        self.assertGreater(summary["covered_fraction"], 0.99)
+        for key in ["pieces", "lifts", "links_length", "min_radius", "sharp_corners", "peak_memory_mb", "warnings"]:
+            self.assertIn(key, summary)
+        self.assertEqual(set(summary["gap"]), {"max", "p99", "mean", "cv"})
+        header = self.read(os.path.join(out, "impact.csv")).decode().splitlines()[0]
+        self.assertEqual(header, "index,piece,kind,x,y,z,nx,ny,nz,s")
+
+    def test_the_job_runs_again_to_the_same_bytes(self):
+        one, two = self.path("one"), self.path("two")
+        self.plan(self.plane, "--source", "vertex:3", "--tool", "ball:6", "--feed", "700", "-o", one)
+        self.plan(os.path.join(one, "job.yaml"), "--threads", 1, "-o", two)
+        self.assertEqual(sorted(os.listdir(one)), sorted(os.listdir(two)))
+        for name in os.listdir(one):
+            first, second = (self.read(os.path.join(folder, name)) for folder in (one, two))
+            if name == "summary.json":
+                first, second = json.loads(first), json.loads(second)
+                for summary in (first, second):
+                    del summary["time_s"], summary["peak_memory_mb"]
+            self.assertEqual(first, second, name)
+
+    def test_export_gives_the_same_path(self):
+        out = self.path("out")
+        self.plan(self.plane, "--spacing", 9, "--no-report", "-o", out)
+        again = self.path("again.csv")
+        self.assertEqual(run("export", out, "--to", "csv", "-o", again).returncode, OK)
+        self.assertEqual(self.read(again), self.read(os.path.join(out, "tool.csv")))
+        self.assert_refused(run("export", out, "--to", "fax", "-o", again), USAGE, "'fax'", "gcode5")
+
+    def test_what_cannot_be_written_is_said(self):
+        self.assert_refused(run("plan", self.plane, "-o", self.plane), INPUT, "plane.off", "is a file")
+        job = self.path("job.yaml")
+        self.write(job, "mesh: plane.off\nspacings: 3\n")
+        self.assert_refused(run("plan", job, "-o", self.path("out")), INPUT, "job.yaml: line 2: spacings", "spacing,")
+        self.assert_refused(run("plan", self.plane, "--spacing", -1, "-o", self.path("out")), USAGE, "spacing", "-1")
+        self.assertFalse(os.path.exists(self.path("out")))
+
+
 class Interrupt(Program):
     def test_ctrl_c_stops_within_a_second_and_leaves_nothing(self):
         _, text = grid_off(400, 400, 1)

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.h"
+#include "isopath/core/error.h"
+#include "isopath/plan/job.h"
+#include "isopath/plan/plan_outputs.h"
+#include "isopath/plan/run_plan.h"
+#include "isopath/post/export.h"
+#include "shared_options.h"
+
+namespace isopath::app {
+namespace {
+
+/// What was given on the command line; what was not leaves the job as it is.
+struct PlanArguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> unit;
+  std::vector<std::string> sources;
+  std::optional<std::string> pattern;
+  std::vector<double> direction;
+  std::optional<double> spacing;
+  std::optional<double> clearance;
+  std::optional<std::string> process;
+  std::optional<std::string> tool;
+  std::optional<double> stand_off;
+  std::vector<double> axis;
+  std::optional<double> feed;
+  std::optional<double> link_feed;
+  std::optional<double> rapid;
+  std::vector<std::string> formats;
+  bool no_report = false;
+};
+
+template <class Value>
+void replace(Value& value, const std::optional<Value>& given) {
+  if (given) value = *given;
+}
+
+/// `ball:D`.
+double ball_diameter_of(const std::string& text) {
+  constexpr std::string_view prefix = "ball:";
+  double diameter = 0;
+  if (!text.starts_with(prefix) || !CLI::detail::lexical_cast(text.substr(prefix.size()), diameter)) {
+    refuse_value("option --tool", text, "ball:DIAMETER, for example ball:10");
+  }
+  return diameter;
+}
+
+void apply_tool(const PlanArguments& given, ToolOptions& tool) {
+  if (given.process) tool.process = process_of(*given.process);
+  if (given.tool) tool.ball_diameter = ball_diameter_of(*given.tool);
+  replace(tool.stand_off, given.stand_off);
+  if (!given.axis.empty()) {
+    tool.axis_mode = AxisMode::fixed_direction;
+    tool.fixed_axis = Vec3(given.axis[0], given.axis[1], given.axis[2]);
+  }
+  replace(tool.cover_feed_mm_per_min, given.feed);
+  replace(tool.link_feed_mm_per_min, given.link_feed);
+  replace(tool.rapid_speed_mm_per_min, given.rapid);
+}
+
+Job job_of(const PlanArguments& given) {
+  const std::string extension = extension_of(given.input);
+  Job job;
+  if (extension == ".yaml" || extension == ".yml") {
+    job = read_job(given.input);
+  } else {
+    job.mesh = given.input;
+  }
+  if (given.unit) job.unit = unit_of(*given.unit);
+  if (!given.sources.empty()) job.sources = parse_sources(given.sources);
+  if (given.pattern) job.pattern = pattern_of(*given.pattern);
+  if (!given.direction.empty()) job.planar_direction = Vec3(given.direction[0], given.direction[1], given.direction[2]);
+  replace(job.spacing, given.spacing);
+  replace(job.clearance, given.clearance);
+  apply_tool(given, job.tool);
+  if (!given.formats.empty()) job.programs = given.formats;
+  if (given.no_report) job.report = false;
+  job.validate();
+  return job;
+}
+
+std::string text_summary(const PlanResult& result, const std::string& folder) {
+  const PathFigures& f = result.figures;
+  const GapReport& gap = result.gap;
+  const double w = result.spacing;
+  std::string text = fmt::format("{} path, {:.4g} mm between passes\n", name_of(std::optional(result.pattern)), w);
+  text += fmt::format("  covering length  {:.5g} mm ({:.3f} of area / spacing)\n", f.cover_length,
+                      f.cover_length * w / gap.area);
+  text += fmt::format("  covered          {:.2f} % of {:.5g} mm²\n", 100 * gap.covered_fraction, gap.area);
+  text += fmt::format("  gap              {:.3f} × spacing at most, {:.3f} for 99 % of the area\n", gap.max / w,
+                      gap.p99 / w);
+  text += fmt::format("  pieces           {}, lifts {}, links {:.4g} mm\n", f.pieces, f.lifts, f.links_length);
+  text += fmt::format("results in {}{}\n", folder, result.job.report ? "; look at its report.html" : "");
+  return text;
+}
+
+void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
+  const Job job = job_of(arguments);
+  PlanResult result;
+  {
+    ConsoleProgress progress(flags.quiet);
+    result = run_plan(job, progress);
+    write_outputs(result, arguments.output, progress);
+  }
+  print_warnings(flags, result.warnings);
+  print(flags.json ? summary_json(result) : text_summary(result, arguments.output));
+}
+
+void add_path_options(CLI::App& command, PlanArguments& given) {
+  add_sources(command, given.sources);
+  command
+      .add_option("--pattern", given.pattern,
+                  "auto: spiral where the isolines are closed, else meander; contour: a pass for every isoline;\n"
+                  "spiral; meander; planar: cuts with parallel planes")
+      ->default_str("auto");
+  command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")
+      ->delimiter(',')
+      ->expected(3)
+      ->default_str("1,0,0");
+  command.add_option("--spacing", given.spacing, "Distance between neighbouring passes, mm")
+      ->default_str("1/60 of the part's size");
+  command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
+      ->default_str("the spacing");
+}
+
+void add_tool_options(CLI::App& command, PlanArguments& given) {
+  const ToolOptions defaults;
+  const auto text = [](double value) { return fmt::format("{}", value); };
+  command.add_option("--process", given.process, "spray, mill or grind")->default_str("mill");
+  command.add_option("--tool", given.tool, "mill, grind: ball:DIAMETER, mm")
+      ->default_str("ball:" + text(defaults.ball_diameter));
+  command.add_option("--stand-off", given.stand_off, "spray: distance of the nozzle, mm")
+      ->default_str(text(defaults.stand_off));
+  command.add_option("--axis", given.axis, "Keep the tool's axis fixed to X,Y,Z (3 axes) instead of along the normal")
+      ->delimiter(',')
+      ->expected(3);
+  command.add_option("--feed", given.feed, "Along covering moves, mm/min")
+      ->default_str(text(defaults.cover_feed_mm_per_min));
+  command.add_option("--link-feed", given.link_feed, "Along links, mm/min")
+      ->default_str(text(defaults.link_feed_mm_per_min));
+  command.add_option("--rapid", given.rapid, "Along lifts, mm/min")->default_str(text(defaults.rapid_speed_mm_per_min));
+}
+
+std::string format_names() {
+  std::string names;
+  for (const ExportFormat& format : export_formats()) names += (names.empty() ? "" : ", ") + std::string(format.name);
+  return names;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
+  auto* command = app.add_subcommand("plan", "The main job: everything from mesh to program and report");
+  const auto arguments = std::make_shared<PlanArguments>();
+  command->add_option("INPUT", arguments->input, "A mesh (STL, OBJ, PLY, OFF, STEP, IGES), or a job file (.yaml)")
+      ->type_name("MESH|JOB.yaml")
+      ->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Folder for summary.json, impact.csv, tool.csv, path.vtp, the program, job.yaml and report.html;\n"
+                   "other files in it stay")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m or inch")->default_str("mm");
+  add_path_options(*command, *arguments);
+  add_tool_options(*command, *arguments);
+  command->add_option("--post", arguments->formats, "Format of the program: " + format_names() + "; may be repeated")
+      ->type_name("FORMAT")
+      ->allow_extra_args(false)
+      ->default_str("gcode5, or yaml where the table cannot reach");
+  command->add_flag("--no-report", arguments->no_report, "Do not write report.html");
+  add_common_flags(*command, flags);
+  command->footer(
+      "Examples:\n"
+      "  isopath plan blade.off --source boundary:0 --spacing 0.5 -o out\n"
+      "  isopath plan door.stl --unit m --spacing 40 --process spray --stand-off 200 -o door\n"
+      "  isopath plan die.stl --pattern planar --direction 0,1,0 --axis 0,0,1 --post gcode3 -o die\n"
+      "  isopath plan out/job.yaml --spacing 1 -o coarser\n\n"
+      "The flags are shorthands for the job file and override it. The job of a run is written to\n"
+      "DIR/job.yaml; running that again gives the same files, but for the times in summary.json.\n\n" +
+      source_help());
+  command->callback([&flags, &action, arguments] { action = [&flags, arguments] { run_command(*arguments, flags); }; });
+}
+
+}  // namespace isopath::app
