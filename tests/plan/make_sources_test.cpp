@@ -1,5 +1,6 @@
 #include "isopath/plan/make_sources.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -86,6 +87,18 @@ TEST(MakeSources, APlaneCutsWhereItsEquationHolds) {
     for (const auto& element : sources.elements()) EXPECT_NEAR(position_of(mesh, element.a).x(), 2.5, 1e-9);
   }
   expect_refused(mesh, "plane:1,0,0,8", {"D = 8", "0 and 7"});
+}
+
+TEST(MakeSources, APlaneThatOnlyTouchesThePartGivesWhatLiesInIt) {
+  const TriangleMesh mesh = test::planar_grid(7, 5, 7, 5);
+  for (const double x : {0.0, 7.0}) {
+    const SourceSet sources = sources_of(mesh, {fmt::format("plane:1,0,0,{}", x).c_str()});
+    EXPECT_NEAR(segment_length(mesh, sources), 5, 1e-9);
+    for (const auto& element : sources.elements()) EXPECT_EQ(position_of(mesh, element.a).x(), x);
+  }
+  const SourceSet corner = sources_of(mesh, {"plane:1,1,0,12"});
+  ASSERT_EQ(corner.elements().size(), 1u);
+  EXPECT_EQ(position_of(mesh, corner.elements()[0].a), Vec3(7, 5, 0));
 }
 
 TEST(MakeSources, FeatureEdgesOfACubeAreItsTwelveEdges) {

@@ -82,6 +82,7 @@ class Maker {
   void add_automatic();
   void add_polyline(const SourceSpec& spec);
   void add_plane(const SourceSpec& spec);
+  bool add_touched(const VertexField& height, double level);
   void add_edges(const SourceSpec& spec);
 
   const TriangleMesh& mesh_;
@@ -180,6 +181,7 @@ void Maker::add_plane(const SourceSpec& spec) {
   const double level = spec.numbers[3] / normal.norm();
   const std::vector<Contour> cuts = isolines(mesh_, height, std::array{level}, {}, progress_);
   if (cuts.empty()) {
+    if (add_touched(height, level)) return;
     double low = infinity;
     double high = -infinity;
     for (const double value : height.values()) {
@@ -190,6 +192,26 @@ void Maker::add_plane(const SourceSpec& spec) {
            fmt::format("with this normal D may lie between {} and {}", low * normal.norm(), high * normal.norm()));
   }
   for (const Contour& cut : cuts) sources_.add_polyline(mesh_, cut.points, cut.closed);
+}
+
+/// A plane at the rim of the part cuts no face, but it meets the edges and vertices that lie in it.
+bool Maker::add_touched(const VertexField& height, double level) {
+  const double tolerance = mesh_.tolerance().length;
+  const auto touched = [&](Index v) { return std::abs(height.values()[v] - level) <= tolerance; };
+  bool any = false;
+  std::vector<char> on_edge(mesh_.n_vertices(), 0);
+  for (Index e = 0; e < mesh_.n_edges(); ++e) {
+    const Index h = mesh_.halfedge_of(e);
+    if (!touched(mesh_.from(h)) || !touched(mesh_.to(h))) continue;
+    sources_.add_halfedges(mesh_, std::array{h}, false);
+    on_edge[mesh_.from(h)] = on_edge[mesh_.to(h)] = any = true;
+  }
+  for (Index v = 0; v < mesh_.n_vertices(); ++v) {
+    if (on_edge[v] || mesh_.outgoing(v) == no_index || !touched(v)) continue;
+    sources_.add_vertex(mesh_, v);
+    any = true;
+  }
+  return any;
 }
 
 void Maker::add_edges(const SourceSpec& spec) {
