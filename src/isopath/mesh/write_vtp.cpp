@@ -6,6 +6,7 @@
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
+#include "isopath/core/markup.h"
 
 namespace isopath {
 namespace {
@@ -37,33 +38,13 @@ void check(const VtpData& data) {
   }
 }
 
-std::string escaped(const std::string& name) {
-  std::string out;
-  for (const char c : name) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 void append_scalars(std::string& out, const char* section, const std::vector<VtpArray>& arrays) {
   if (arrays.empty()) return;
-  const std::string first = escaped(arrays.front().name);
+  const std::string first = markup_escaped(arrays.front().name);
   fmt::format_to(std::back_inserter(out), "      <{} Scalars=\"{}\">\n", section, first);
   for (const VtpArray& array : arrays) {
     fmt::format_to(std::back_inserter(out), "        <DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n",
-                   escaped(array.name));
+                   markup_escaped(array.name));
     for (const double value : array.values) fmt::format_to(std::back_inserter(out), "{}\n", value);
     out += "        </DataArray>\n";
   }

@@ -6,35 +6,12 @@
 #include <string_view>
 
 #include "isopath/core/error.h"
+#include "isopath/core/markup.h"
 #include "isopath/post/report_blocks.h"
 #include "isopath/post/viewer_assets.h"
 
 namespace isopath {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 void check(const ReportData& data) {
   if (data.mesh == nullptr) throw Error(ErrorCode::bad_usage, "a report needs a mesh");
@@ -48,12 +25,12 @@ void check(const ReportData& data) {
 }
 
 std::string html_of(const ReportTable& table) {
-  std::string html = fmt::format("<section class=\"figures\"><h2>{}</h2><table>\n", escaped(table.title));
+  std::string html = fmt::format("<section class=\"figures\"><h2>{}</h2><table>\n", markup_escaped(table.title));
   for (const ReportFigure& row : table.rows) {
     const std::string note =
-        row.explanation.empty() ? std::string() : fmt::format("<small>{}</small>", escaped(row.explanation));
+        row.explanation.empty() ? std::string() : fmt::format("<small>{}</small>", markup_escaped(row.explanation));
     html += fmt::format("<tr><th scope=\"row\">{}{}</th><td>{}</td><td class=\"unit\">{}</td></tr>\n",
-                        escaped(row.label), note, escaped(row.value), escaped(row.unit));
+                        markup_escaped(row.label), note, markup_escaped(row.value), markup_escaped(row.unit));
   }
   return html + "</table></section>\n";
 }
@@ -61,13 +38,13 @@ std::string html_of(const ReportTable& table) {
 std::string html_of_warnings(const std::vector<std::string>& warnings) {
   if (warnings.empty()) return {};
   std::string html = "<section class=\"warnings\"><h2>Warnings</h2><ul>\n";
-  for (const std::string& warning : warnings) html += fmt::format("<li>{}</li>\n", escaped(warning));
+  for (const std::string& warning : warnings) html += fmt::format("<li>{}</li>\n", markup_escaped(warning));
   return html + "</ul></section>\n";
 }
 
 std::string content_of(std::string_view place, const ReportData& data) {
-  if (place == "title") return escaped(data.title);
-  if (place == "subtitle") return escaped(data.subtitle);
+  if (place == "title") return markup_escaped(data.title);
+  if (place == "subtitle") return markup_escaped(data.subtitle);
   if (place == "style") return std::string(viewer_style());
   if (place == "script") return std::string(viewer_script());
   if (place == "warnings") return html_of_warnings(data.warnings);
