@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "isopath/impact/strip.h"
+#include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
 namespace {
@@ -55,27 +56,43 @@ Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& sta
   return ring;
 }
 
-/// The point between p and q where the function has this level: bisection along the chord, each point moved onto the
-/// surface.
-SurfacePoint point_at_level(const SurfaceLinker& linker, const SurfaceFunction& function, const Vec3& p, const Vec3& q,
-                            double level_p, double level_q, double level) {
+SurfacePoint between(const TriangleMesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double t) {
+  const Index face = common_face(mesh, a, b);
+  const SurfacePoint in_a = express_in(mesh, a, face);
+  const SurfacePoint in_b = express_in(mesh, b, face);
+  return {face, (1 - t) * in_a.barycentric + t * in_b.barycentric};
+}
+
+/// The point of a rung, a short curve on the surface that rises or falls from one contour to the next, where the
+/// function has this level.
+SurfacePoint point_at_level(const TriangleMesh& mesh, const SurfaceFunction& function,
+                            const std::vector<SurfacePoint>& rung, double level, double tolerance) {
+  // the piece of the rung that the level crosses first
+  SurfacePoint a = rung.front();
+  double f_a = function.value(a) - level;
+  SurfacePoint b = a;
+  double f_b = f_a;
+  for (std::size_t k = 1; k < rung.size() && (f_a > 0) == (f_b > 0); ++k) {
+    a = b;
+    f_a = f_b;
+    b = rung[k];
+    f_b = function.value(b) - level;
+  }
+  if ((f_a > 0) == (f_b > 0)) return std::abs(f_a) < std::abs(f_b) ? a : b;
   double low = 0;
   double high = 1;
-  double f_low = level_p - level;
-  double f_high = level_q - level;
-  SurfacePoint at;
-  for (int step = 0; step < 20; ++step) {
-    double t = f_low == f_high ? 0.5 : f_low / (f_low - f_high);
-    t = low + std::clamp(t, 0.05, 0.95) * (high - low);
-    at = linker.locator().nearest(p + t * (q - p)).at;
+  SurfacePoint at = a;
+  for (int step = 0; step < 40; ++step) {
+    const double t = low + std::clamp(f_a / (f_a - f_b), 0.05, 0.95) * (high - low);
+    at = between(mesh, a, b, t);
     const double f = function.value(at) - level;
-    if (std::abs(f) <= 1e-4 * std::abs(level_q - level_p)) break;
-    if ((f > 0) == (f_high > 0)) {
+    if (std::abs(f) <= tolerance) break;
+    if ((f > 0) == (f_b > 0)) {
       high = t;
-      f_high = f;
+      f_b = f;
     } else {
       low = t;
-      f_low = f;
+      f_a = f;
     }
   }
   return at;
@@ -109,8 +126,8 @@ class SpiralBuilder {
       if (share <= 0) continue;
       if (share >= 1) break;
       const double level = (1 - share) * p.level + share * q.level;
-      linker_.extend(curve_, point_at_level(linker_, function_, p.curve.positions[i], q.curve.positions[j], p.level,
-                                            q.level, level));
+      const auto rung = linker_.link(p.curve.points[i], q.curve.points[j], 8 * gap);
+      if (rung) linker_.extend(curve_, point_at_level(linker_.mesh(), function_, rung->points, level, 1e-4 * gap));
     }
     linker_.extend(curve_, q.curve.points.front());
     return true;
