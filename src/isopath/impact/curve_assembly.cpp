@@ -19,12 +19,16 @@ void CurveAssembly::add_stroke(const SurfaceCurve& stroke) {
   for (std::size_t i = 0; i < stroke.size(); ++i) append(stroke.points[i], stroke.positions[i], MoveKind::cover);
 }
 
+void CurveAssembly::add_link(const SurfaceCurve& way) {
+  for (std::size_t i = 1; i < way.size(); ++i) append(way.points[i], way.positions[i], MoveKind::link);
+}
+
 void CurveAssembly::connect(const SurfacePoint& to) {
   const ImpactPoint from = curve_.points.back();
   auto way = boundary_way(linker_.mesh(), from.at, to, limits_.longest_link);
   if (!way) way = linker_.link(from.at, to, limits_.longest_link);
   if (way) {
-    for (std::size_t i = 1; i < way->size(); ++i) append(way->points[i], way->positions[i], MoveKind::link);
+    add_link(*way);
     return;
   }
   ++piece_;

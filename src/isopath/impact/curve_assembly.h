@@ -24,6 +24,8 @@ class CurveAssembly {
   Vec3 end() const { return curve_.points.back().position; }
 
   void add_stroke(const SurfaceCurve& stroke);
+  /// Goes on along a curve that is covered already and starts where the last stroke ended.
+  void add_link(const SurfaceCurve& way);
   ImpactCurve take() { return std::move(curve_); }
   int blocked_lifts() const { return blocked_lifts_; }
 

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "isopath/core/error.h"
-#include "isopath/field/exact_field.h"
-#include "isopath/mesh/surface_walk.h"
+#include "isopath/impact/cover_field.h"
 
 namespace isopath {
 namespace {
@@ -18,23 +17,6 @@ namespace {
 constexpr double sample_distance = 1.0 / 6;
 constexpr int most_divisions = 64;
 constexpr double covered_limit = 1.02;
-
-SourceSet covering_source(const TriangleMesh& mesh, const ImpactCurve& curve) {
-  SourceSet source;
-  std::vector<SurfacePoint> polyline;
-  const auto flush = [&] {
-    if (polyline.size() > 1) source.add_polyline(mesh, polyline, false);
-    polyline.clear();
-  };
-  for (const ImpactPoint& point : curve.points) {
-    if (point.kind != MoveKind::cover ||
-        (!polyline.empty() && common_face(mesh, polyline.back(), point.at) == no_index))
-      flush();
-    if (point.at.valid()) polyline.push_back(point.at);
-  }
-  flush();
-  return source;
-}
 
 struct Sample {
   double gap;
@@ -83,9 +65,8 @@ GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double
   }
   progress.stage("gap");
   GapReport report;
-  const SourceSet source = covering_source(mesh, curve);
-  if (source.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing, so there is no gap to measure");
-  const ExactField field = ExactField::compute(mesh, source, {}, progress);
+  const CoverField cover = distance_from_cover(mesh, curve, progress);
+  const ExactField& field = cover.field;
   for (const double d : field.vertex_distances()) report.vertex_gap.push_back(2 * d);
 
   std::vector<Sample> samples = sample_surface(field, sample_distance * spacing, progress);

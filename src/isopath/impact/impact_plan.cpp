@@ -7,6 +7,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/impact/curve_assembly.h"
+#include "isopath/impact/gap_repair.h"
 #include "isopath/impact/passes.h"
 #include "isopath/impact/spiral.h"
 #include "isopath/impact/stroke_order.h"
@@ -16,6 +17,10 @@ namespace {
 
 /// A link on the surface passes over what is covered already; beyond a few spacings the tool rather lifts.
 constexpr double longest_link_in_spacings = 8;
+
+/// Where two fronts meet at a right angle, the gap along their ridge is 2 / (1 + sin 45°) = 1.17 spacings; passes this
+/// much closer keep it within `widest_gap`, so that ordinary corners need no detours.
+constexpr double pass_allowance = 0.98;
 
 std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
   std::vector<Vec3> places;
@@ -61,7 +66,7 @@ class Planner {
 
   ImpactPlan run() {
     progress_.stage("isolines");
-    passes_ = choose_passes(mesh_, function_, options_.spacing, progress_);
+    passes_ = choose_passes(mesh_, function_, pass_allowance * options_.spacing, progress_);
     if (passes_.contours.empty()) {
       throw Error(
           ErrorCode::no_plan, "no isoline lies on the surface",
@@ -77,11 +82,13 @@ class Planner {
     const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;
     for (const Passes::Run& run : passes_.runs) gates.push_back(gates_of(mesh_, passes_, run, samples));
     const double lift_cost = 20 * options_.spacing;
-    std::size_t done = 0;
-    for (const Visit& visit : order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost)) {
+    const std::vector<Visit> visits = order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost);
+    for (std::size_t i = 0; i < visits.size(); ++i) {
       progress_.checkpoint();
-      add_run(passes_.runs[visit.run], visit.gate, assembly);
-      progress_.at(static_cast<double>(++done) / static_cast<double>(passes_.runs.size()));
+      add_run(passes_.runs[visits[i].run], visits[i].gate, assembly);
+      if (i + 1 < visits.size())
+        approach(passes_.runs[visits[i].run], visits[i].gate, gates[visits[i + 1].run][visits[i + 1].gate], assembly);
+      progress_.at(static_cast<double>(i + 1) / static_cast<double>(visits.size()));
     }
     ImpactPlan plan;
     if (assembly.blocked_lifts() > 0) {
@@ -89,6 +96,8 @@ class Planner {
           fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
     }
     plan.curve = assembly.take();
+    progress_.stage("wide gaps");
+    close_wide_gaps(linker_, normals_, options_.spacing, plan.curve, progress_);
     plan.contours = std::move(passes_.contours);
     return plan;
   }
@@ -105,6 +114,28 @@ class Planner {
       return;
     }
     for (const Contour* contour : contours) assembly.add_stroke(closed_from(mesh_, *contour, near()));
+  }
+
+  /// A closed run ends on a whole ring: on along that ring to where the next run is nearest.
+  void approach(const Passes::Run& run, std::size_t gate, const Gate& next, CurveAssembly& assembly) const {
+    if (!run.closed) return;
+    const Contour& last = passes_.contours[gate & 1 ? run.contours.front() : run.contours.back()];
+    const SurfaceCurve ring = closed_from(mesh_, last, assembly.end());
+    std::size_t goal = 0;
+    double least = infinity;
+    for (const Vec3& place : next.entry) {
+      const std::size_t i = nearest_index(ring, place);
+      const double d = (ring.positions[i] - place).norm();
+      if (d < least) {
+        least = d;
+        goal = i;
+      }
+    }
+    SurfaceCurve way;
+    for (std::size_t i = 0; i <= goal; ++i) way.add(mesh_, ring.points[i]);
+    SurfaceCurve other_way;
+    for (std::size_t i = ring.size(); i-- > goal;) other_way.add(mesh_, ring.points[i]);
+    assembly.add_link(length_of(way) <= length_of(other_way) ? way : other_way);
   }
 
   void add_open(const std::vector<const Contour*>& contours, bool from_end, CurveAssembly& assembly) {

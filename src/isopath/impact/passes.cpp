@@ -3,24 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "isopath/field/value_range.h"
+
 namespace isopath {
 namespace {
-
-struct Range {
-  double low = infinity;
-  double high = -infinity;
-};
-
-Range finite_range(const TriangleMesh& mesh, const SurfaceFunction& function) {
-  Range range;
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    const double value = function.value_at_vertex(v);
-    if (!std::isfinite(value)) continue;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  return range;
-}
 
 /// The contours kept, linked over those left out.
 struct Links {
@@ -68,7 +54,7 @@ Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
 
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
   Passes passes;
-  const Range range = finite_range(mesh, function);
+  const ValueRange range = value_range(mesh, function, 0.01 * spacing);
   if (!(range.high > range.low)) return passes;
   const double count = std::max(1.0, std::ceil((range.high - range.low) / spacing - 1e-9));
   passes.spacing = (range.high - range.low) / count;

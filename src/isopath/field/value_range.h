@@ -1,0 +1,19 @@
+#pragma once
+
+#include "isopath/field/surface_function.h"
+
+namespace isopath {
+
+/// The least and the greatest finite value of a function on the whole surface, insides of faces included.
+struct ValueRange {
+  double low = infinity;
+  double high = -infinity;
+  bool empty() const { return low > high; }
+};
+
+/// Both ends are values the function takes, within `tolerance` of the true extremes: faces are divided as long as the
+/// function's slope allows more than was found (branch and bound). Faces with a corner that is not reached are left
+/// out.
+ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance);
+
+}  // namespace isopath

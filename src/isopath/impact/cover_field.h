@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "isopath/field/exact_field.h"
+#include "isopath/impact/impact_curve.h"
+
+namespace isopath {
+
+/// The exact distance from the covering part of a curve: half the gap between passes.
+struct CoverField {
+  ExactField field;
+  /// For every source element of the field, the point of the curve that its segment, or its point, starts at.
+  std::vector<Index> curve_point;
+};
+
+/// Throws Error(no_plan) when the curve covers nothing, Error(cancelled) on request.
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, Progress& progress);
+
+}  // namespace isopath

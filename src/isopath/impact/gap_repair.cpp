@@ -1,0 +1,79 @@
+#include "isopath/impact/gap_repair.h"
+
+#include <algorithm>
+
+#include "isopath/impact/cover_field.h"
+
+namespace isopath {
+namespace {
+
+/// A way out of the curve and back, starting and ending at its foot between point `after` of the curve and the next
+/// one.
+struct Detour {
+  Index after = 0;
+  std::vector<ImpactPoint> points;
+};
+
+class DetourBuilder {
+ public:
+  DetourBuilder(const TriangleMesh& mesh, const SmoothNormals& normals, const ImpactCurve& curve,
+                const CoverField& cover)
+      : mesh_(mesh), normals_(normals), curve_(curve), cover_(cover) {}
+
+  Detour around(const Contour& contour) const {
+    const SurfacePoint& start = contour.points.front();
+    std::vector<SurfacePoint> way_back = cover_.field.shortest_path(start);
+    Detour detour;
+    detour.after = cover_.curve_point[cover_.field.nearest(start).root];
+    const Index piece = curve_.points[detour.after].piece;
+    const auto add = [&](const SurfacePoint& at, MoveKind kind) {
+      detour.points.push_back({kind, at, position_of(mesh_, at), normals_.at(at), piece});
+    };
+    add(way_back.back(), MoveKind::cover);  // on the curve itself
+    for (auto p = way_back.rbegin() + 1; p != way_back.rend(); ++p) add(*p, MoveKind::link);
+    for (std::size_t i = 1; i < contour.points.size(); ++i) add(contour.points[i], MoveKind::cover);
+    if (contour.closed) {
+      add(start, MoveKind::cover);
+    } else {
+      for (std::size_t i = contour.points.size() - 1; i-- > 0;) add(contour.points[i], MoveKind::link);
+    }
+    for (std::size_t i = 1; i < way_back.size(); ++i) add(way_back[i], MoveKind::link);
+    return detour;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const SmoothNormals& normals_;
+  const ImpactCurve& curve_;
+  const CoverField& cover_;
+};
+
+}  // namespace
+
+int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, double spacing, ImpactCurve& curve,
+                    Progress& progress) {
+  const TriangleMesh& mesh = linker.mesh();
+  const CoverField cover = distance_from_cover(mesh, curve, progress);
+  const DetourBuilder builder(mesh, normals, curve, cover);
+  std::vector<Detour> detours;
+  for (double level = 0.5 * widest_gap * spacing;; level += spacing) {
+    const auto contours =
+        isolines(mesh, cover.field, std::span(&level, 1), {.chord_tolerance = 1e-3 * spacing}, progress);
+    if (contours.empty()) break;
+    for (const Contour& contour : contours) detours.push_back(builder.around(contour));
+  }
+  if (detours.empty()) return 0;
+  std::stable_sort(detours.begin(), detours.end(), [](const Detour& a, const Detour& b) { return a.after < b.after; });
+  ImpactCurve whole;
+  std::size_t next = 0;
+  for (Index i = 0; i < static_cast<Index>(curve.points.size()); ++i) {
+    whole.points.push_back(curve.points[i]);
+    for (; next < detours.size() && detours[next].after == i; ++next) {
+      whole.points.insert(whole.points.end(), detours[next].points.begin(), detours[next].points.end());
+    }
+  }
+  curve = std::move(whole);
+  return static_cast<int>(detours.size());
+}
+
+}  // namespace isopath
