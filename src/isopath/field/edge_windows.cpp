@@ -15,10 +15,9 @@ constexpr double filler_margin = 1e-12;
 bool beats(const Window& window, const Window& old, double x) {
   const double mine = window.distance(x);
   const double theirs = old.distance(x);
-  double margin = rounding;
-  if (window.filler && !old.filler) margin = filler_margin;
-  if (!window.filler && old.filler) margin = -filler_margin;
-  return mine < theirs - margin * theirs;
+  if (window.filler == old.filler) return mine < theirs - rounding * theirs;
+  const double margin = filler_margin * theirs + window.error + old.error;
+  return mine < theirs - (window.filler ? margin : -margin);
 }
 
 }  // namespace
@@ -58,8 +57,8 @@ void WindowPool::reorder(std::vector<Index> order) {
   blocks_.resize((kept + block_mask) >> block_bits);
 }
 
-EdgeWindows::EdgeWindows(std::vector<double> edge_length, std::vector<double> snap)
-    : lists_(edge_length.size()), length_(std::move(edge_length)), snap_(std::move(snap)) {}
+EdgeWindows::EdgeWindows(std::vector<double> edge_length, std::vector<double> snap, const MergeLimits& limits)
+    : lists_(edge_length.size()), length_(std::move(edge_length)), snap_(std::move(snap)), limits_(limits) {}
 
 WindowPool EdgeWindows::take(std::vector<Index>& first) {
   std::vector<Index> order;
@@ -161,6 +160,26 @@ void EdgeWindows::absorb_narrow_parts(double snap) {
   parts_.resize(kept);
 }
 
+void EdgeWindows::merge_neighbours() {
+  std::size_t kept = 1;
+  for (std::size_t i = 1; i < slots_.size(); ++i) {
+    Slot slot = slots_[i];
+    for (; kept > 0; --kept) {
+      const Index left_id = slots_[kept - 1].id;
+      Window& left = pool_[left_id];
+      const Window& right = pool_[slot.id];
+      if (!left.pending || !right.pending || left.halfedge != right.halfedge || left.end != right.begin) break;
+      if (!merge_windows(left, right, limits_, left)) break;
+      std::erase(inserted_, slot.id);
+      if (std::find(inserted_.begin(), inserted_.end(), left_id) == inserted_.end()) inserted_.push_back(left_id);
+      pool_.release(slot.id);
+      slot = slots_[kept - 1];
+    }
+    slots_[kept++] = slot;
+  }
+  slots_.resize(kept);
+}
+
 void EdgeWindows::write_back(std::vector<Slot>& list, std::size_t first, std::size_t last, const Window& window) {
   // An old window keeps its id for its first part; further parts are copies. Those without a part are freed.
   slots_.clear();
@@ -185,6 +204,7 @@ void EdgeWindows::write_back(std::vector<Slot>& list, std::size_t first, std::si
     slots_.push_back({part.begin, id});
   }
   for (; old < last; ++old) pool_.release(list[old].id);
+  merge_neighbours();
 
   const std::size_t common = std::min(last - first, slots_.size());
   std::copy_n(slots_.begin(), common, list.begin() + first);

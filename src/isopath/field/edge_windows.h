@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isopath/field/window.h"
+#include "isopath/field/window_merge.h"
 
 namespace isopath {
 
@@ -34,7 +35,7 @@ class EdgeWindows {
  public:
   /// `snap[e]` is the width below which an interval of edge e is nothing: it is given to its neighbour, never left
   /// open.
-  EdgeWindows(std::vector<double> edge_length, std::vector<double> snap);
+  EdgeWindows(std::vector<double> edge_length, std::vector<double> snap, const MergeLimits& limits);
 
   /// Puts the parts of a window that are nearer than what the edge holds into the edge's list, and trims or removes
   /// what they beat. Returns the ids of the pieces to propagate or look at; valid until the next call.
@@ -62,14 +63,16 @@ class EdgeWindows {
   void append(double begin, double end, Index id);
   void divide_overlap(Index old_id, const Window& window, double low, double high, double snap);
   void absorb_narrow_parts(double snap);
+  void merge_neighbours();
   void write_back(std::vector<Slot>& list, std::size_t first, std::size_t last, const Window& window);
 
   WindowPool pool_;
   std::vector<std::vector<Slot>> lists_;
   std::vector<double> length_;
   std::vector<double> snap_;
-  std::vector<Part> parts_;      // scratch of insert
-  std::vector<Slot> slots_;      // scratch of insert
+  std::vector<Part> parts_;  // scratch of insert
+  std::vector<Slot> slots_;  // scratch of insert
+  MergeLimits limits_;
   std::vector<Index> inserted_;  // result of insert
 };
 

@@ -1,10 +1,13 @@
 #include "isopath/field/exact_field.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field_data.h"
+#include "isopath/field/graph_field.h"
 #include "isopath/field/window_propagation.h"
 
 namespace isopath {
@@ -59,7 +62,29 @@ Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {
   return v.x() * x + v.y() * y;
 }
 
+/// Merging is to last until the farthest point; paths along edges tell about how far that is.
+MergeLimits merge_limits(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
+                         Progress& progress) {
+  MergeLimits limits{.accuracy = options.accuracy, .size = mesh.size()};
+  if (options.accuracy == 0) return limits;
+  double farthest = 0;
+  for (const double d : graph_distances(mesh, sources, {}, progress)) {
+    if (d < infinity) farthest = std::max(farthest, d);
+  }
+  // surfaces are crossed a little faster than along edges
+  limits.reach = std::min(options.stop_distance, 0.85 * farthest);
+  return limits;
+}
+
 }  // namespace
+
+void ExactFieldOptions::validate() const {
+  if (accuracy >= 0 && accuracy < infinity) return;
+  throw Error(ErrorCode::bad_usage, "accuracy of a distance field is not a length",
+              {.element = "accuracy",
+               .value = fmt::format("{} mm", accuracy),
+               .advice = "give 0 for exact distances, or for example 1e-6 of the model's size"});
+}
 
 ExactField::ExactField(std::unique_ptr<ExactFieldData> data) : data_(std::move(data)) {}
 ExactField::ExactField(ExactField&&) noexcept = default;
@@ -69,9 +94,10 @@ ExactField::~ExactField() = default;
 ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
                                Progress& progress) {
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
+  options.validate();
   auto data = std::make_unique<ExactFieldData>(mesh, sources);
   index_sources(*data);
-  WindowPropagation propagation(mesh, data->geometry, sources);
+  WindowPropagation propagation(mesh, data->geometry, sources, merge_limits(mesh, sources, options, progress));
   propagation.run(options.stop_distance, progress);
   data->distance = std::move(propagation.vertex_distances());
   data->root = std::move(propagation.vertex_roots());

@@ -15,6 +15,13 @@ class ExactFieldData;
 struct ExactFieldOptions {
   /// Windows that start farther than this are not propagated; points beyond are unreached or bounded from above.
   double stop_distance = infinity;
+  /// Most that any distance may be off, in mm; 0 for exact distances up to rounding, otherwise finite and positive.
+  /// 1e-6 of the model's size saves most of the windows of a curved part. Where fronts of two sources are almost
+  /// equally far, roots are then only nearest within twice this; values on the two sides of an edge may differ by as
+  /// much.
+  double accuracy = 0;
+
+  void validate() const;  ///< throws Error(bad_usage)
 };
 
 /// The exact geodesic distance field of a source set on a polyhedral surface (paper ch. 4; Mitchell, Mount &
@@ -22,7 +29,7 @@ struct ExactFieldOptions {
 /// field.
 class ExactField final : public SurfaceFunction {
  public:
-  /// Throws Error(bad_usage) for an empty source set, Error(cancelled) on request.
+  /// Throws Error(bad_usage) for an empty source set or invalid options, Error(cancelled) on request.
   static ExactField compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options = {},
                             Progress& progress = Progress::none());
 

@@ -19,9 +19,9 @@ struct Window {
   double end = 0;
   Vec2 source = Vec2::Zero();  ///< point: unfolded pseudo-source. line: unit direction the front travels in
   double offset = 0;  ///< point: distance already travelled at the pseudo-source. line: distance at the edge's origin
+  double error = 0;   ///< most that its distances are off, by merging windows on the way
   Index halfedge = no_index;  ///< the half-edge whose face the front enters; none when it goes no farther
   Index root = no_index;      ///< source element it comes from
-  Index next = no_index;      ///< following window of the edge
   Kind kind = Kind::point;
   /// A path along the edge from its end, or the source on the edge itself. It goes no farther, and gives way to real
   /// fronts in a tie: it is there for points that are reached by a single ray, along the edge.
@@ -38,6 +38,11 @@ struct Window {
   double min_distance() const {
     if (kind == Kind::point && source.x() > begin && source.x() < end) return offset + std::abs(source.y());
     return std::min(distance(begin), distance(end));
+  }
+  /// Sign of y where the front comes from; zero when it runs along the edge.
+  int source_side() const {
+    const double y = kind == Kind::point ? source.y() : -source.y();
+    return (y > 0) - (y < 0);
   }
   /// Unit direction of travel at x on the edge (canonical frame); zero at the source itself.
   Vec2 direction(double x) const;

@@ -33,10 +33,10 @@ double hit_fraction(const Vec2& p, const Vec2& q, const Vec2& s, const Vec2& d) 
 }  // namespace
 
 WindowPropagation::WindowPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry,
-                                     const SourceSet& sources)
+                                     const SourceSet& sources, const MergeLimits& limits)
     : mesh_(mesh),
       geometry_(geometry),
-      windows_(to_vector(mesh.edge_lengths()), snap_widths(mesh)),
+      windows_(to_vector(mesh.edge_lengths()), snap_widths(mesh), limits),
       distance_(mesh.n_vertices(), infinity),
       root_(mesh.n_vertices(), no_index),
       arrival_(mesh.n_vertices()),
@@ -87,14 +87,15 @@ void WindowPropagation::insert(Index edge, const Window& canonical) {
       return left ? turn : -turn;
     };
     if (window.begin == 0) {
-      offer_vertex(mesh_.from(h), window.distance(0), window.root, {h, turn_of(-window.direction(0), from_face_of_h)});
+      offer_vertex(mesh_.from(h), window.distance(0), window.root,
+                   {h, window.error, turn_of(-window.direction(0), from_face_of_h)});
     }
     if (window.end == length) {
       const Index outgoing = mesh_.twin(h) != no_index ? mesh_.twin(h) : TriangleMesh::next(h);
       double turn = turn_of(window.direction(length), !from_face_of_h);
       // on the boundary the edge is the last of the fan: measure from the half-edge before it
       if (mesh_.twin(h) == no_index) turn += geometry_.angle_at_tail(outgoing);
-      offer_vertex(mesh_.to(h), window.distance(length), window.root, {outgoing, turn});
+      offer_vertex(mesh_.to(h), window.distance(length), window.root, {outgoing, window.error, turn});
     }
   }
 }
@@ -150,6 +151,7 @@ void WindowPropagation::follow_edges(Index vertex) {
     Window window;
     window.end = length;
     window.offset = distance_[vertex];
+    window.error = arrival_[vertex].error;
     window.root = root_[vertex];
     window.filler = true;
     insert_leaving(h, window);
@@ -168,6 +170,7 @@ void WindowPropagation::follow_edges(Index vertex) {
   window.end = geometry_.length(arriving);
   window.source.x() = window.end;
   window.offset = distance_[vertex];
+  window.error = arrival_[vertex].error;
   window.root = root_[vertex];
   window.filler = true;
   insert_leaving(arriving, window);
@@ -217,6 +220,7 @@ void WindowPropagation::emit_into_face(Index outgoing, double low, double high) 
   window.end = high == infinity ? length : at_angle(high);
   window.source = geometry_.apex(opposite);
   window.offset = distance_[vertex];
+  window.error = arrival_[vertex].error;
   window.root = root_[vertex];
   insert_leaving(opposite, window);
 }
@@ -279,10 +283,12 @@ void WindowPropagation::propagate_to(Index halfedge, const Window& window, const
 bool WindowPropagation::hopeless(Index halfedge, const Window& window) const {
   // Xin & Wang 2009: an end that is nearer by way of a corner of the edge condemns all points between that end and the
   // corner.
-  const double margin = 1e-12 * size_;
+  const double margin = 1e-12 * size_ + window.error;
   const double length = geometry_.length(halfedge);
-  return window.distance(window.end) > distance_[mesh_.from(halfedge)] + window.end + margin ||
-         window.distance(window.begin) > distance_[mesh_.to(halfedge)] + (length - window.begin) + margin;
+  const Index from = mesh_.from(halfedge);
+  const Index to = mesh_.to(halfedge);
+  return window.distance(window.end) > distance_[from] + arrival_[from].error + window.end + margin ||
+         window.distance(window.begin) > distance_[to] + arrival_[to].error + (length - window.begin) + margin;
 }
 
 }  // namespace isopath

@@ -16,10 +16,12 @@ namespace isopath {
 /// convex becomes a pseudo-source.
 ///
 /// Every window that is dropped is, at each of its points, beaten by what the edge holds; so each edge ends up tiled by
-/// the exact distance. Hair cracks from rounding, narrower than `snap`, are closed when windows are inserted.
+/// the exact distance, up to what merging windows changes (see merge_windows). Hair cracks from rounding, narrower than
+/// `snap`, are closed when windows are inserted.
 class WindowPropagation {
  public:
-  WindowPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources);
+  WindowPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                    const MergeLimits& limits);
 
   void run(double stop_distance, Progress& progress);
 
@@ -46,6 +48,7 @@ class WindowPropagation {
   };
   struct Arrival {
     Index halfedge = no_index;  ///< outgoing half-edge whose edge the front came by
+    double error = 0;           ///< most that the distance is off
     double turn = 0;            ///< from that half-edge to the way back to the source, counter-clockwise
   };
 
