@@ -5,7 +5,7 @@ out=build/docs
 picture() { # NAME RUN screenshot options...
   local name=$1 run=$2
   shift 2
-  node tools/screenshot.mjs "$out/$run/report.html" "docs/img/$name.png" --size 840x560 --only-part "$@"
+  node tools/screenshot.mjs "$out/$run/report.html" "docs/img/$name.png" --size 720x480 --only-part "$@"
   echo "docs/img/$name.png"
 }
 plan() { # RUN arguments...
