@@ -21,7 +21,7 @@ std::optional<SurfaceCurve> walk_forward(const TriangleMesh& mesh, const Surface
   const Vec3 goal = position_of(mesh, to);
   double length = 0;
   const auto ahead = [&] {
-    return (mesh.position(mesh.to(h)) - goal).norm() < (mesh.position(mesh.to(h)) - curve.positions.back()).norm();
+    return (mesh.position(mesh.to(h)) - goal).norm() <= (mesh.position(mesh.to(h)) - curve.positions.back()).norm();
   };
   while (h != last || !ahead()) {
     const Index vertex = mesh.to(h);
