@@ -24,7 +24,8 @@ class DetourBuilder {
     const SurfacePoint& start = contour.points.front();
     std::vector<SurfacePoint> way_back = cover_.field.shortest_path(start);
     Detour detour;
-    detour.after = cover_.curve_point[cover_.field.nearest(start).root];
+    // asked at the foot: where two ways from the start are equally long, its own nearest root may be the other one's
+    detour.after = cover_.curve_point[cover_.field.nearest(way_back.back()).root];
     const Index piece = curve_.points[detour.after].piece;
     const auto add = [&](const SurfacePoint& at, MoveKind kind) {
       detour.points.push_back({kind, at, position_of(mesh_, at), normals_.at(at), piece});
