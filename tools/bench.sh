@@ -1,0 +1,8 @@
+# Builds and runs the benchmarks. Sourced by ../dev. Arguments go to every benchmark program, for example
+#   ./dev bench --benchmark_filter=exact
+setup
+cmake --preset release -DISOPATH_BENCH=ON >/dev/null
+cmake --build --preset release
+for program in build/release/bench/*_bench; do
+  "$program" "$@"
+done

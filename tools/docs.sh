@@ -1,0 +1,30 @@
+# Runs the program again for the pictures in docs/img. Sourced by ../dev.
+build
+
+out=build/docs
+picture() { # NAME RUN screenshot options...
+  local name=$1 run=$2
+  shift 2
+  node tools/screenshot.mjs "$out/$run/report.html" "docs/img/$name.png" --size 720x480 --only-part "$@"
+  echo "docs/img/$name.png"
+}
+plan() { # RUN arguments...
+  local run=$1
+  shift
+  build/isopath plan "$@" -o "$out/$run" --post csv --quiet >/dev/null
+}
+
+mkdir -p docs/img
+part=(data/mech_part_holes.off --unit m --process mill --tool ball:50)
+plan spiral "${part[@]}" --source boundary --pattern spiral --spacing 40
+plan contour "${part[@]}" --source boundary --pattern contour --spacing 80
+plan meander "${part[@]}" --source plane:0,0,1,0 --pattern meander --spacing 40
+plan planar "${part[@]}" --pattern planar --direction 1,0,0 --spacing 40
+plan blade data/turbine_blade.off --unit cm --source boundary:0 --pattern spiral --spacing 40 --process spray --stand-off 150
+
+picture part_with_path spiral --hide tool
+picture distance_and_isolines contour --hide tool,path,arrows --show isolines
+picture gap_of_distance_field spiral --color gap --hide tool,path,arrows
+picture gap_of_parallel_planes planar --color gap --hide tool,path,arrows
+picture meander meander --hide tool
+picture spray_path blade
