@@ -50,7 +50,14 @@ void index_sources(ExactFieldData& data) {
   data.first_source.assign(data.mesh.n_faces() + 1, 0);
   for (const auto& [f, id] : pairs) {
     ++data.first_source[f + 1];
-    data.face_sources.push_back(id);
+    // a point on an edge or vertex may be stored with a neighbouring face; so may a segment along an edge
+    const auto place = [&, face = f](const SurfacePoint& point) {
+      return data.geometry.in_frame(3 * face, express_in(data.mesh, point, face).barycentric);
+    };
+    ExactFieldData::PlacedSource source{.id = id, .a = place(elements[id].a)};
+    source.b = elements[id].kind == SourceElement::Kind::segment ? place(elements[id].b) : source.a;
+    source.squared_length = (source.b - source.a).squaredNorm();
+    data.face_sources.push_back(source);
   }
   for (Index f = 0; f < data.mesh.n_faces(); ++f) data.first_source[f + 1] += data.first_source[f];
 }
@@ -61,6 +68,29 @@ Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {
   const Vec3 y = mesh.face_normal(face).cross(x);
   return v.x() * x + v.y() * y;
 }
+
+/// The convex cone that some directions span, while they lie in one open half-plane.
+class DirectionCone {
+ public:
+  /// False when the directions no longer do.
+  bool add(const Vec2& d) {
+    if (right_ == Vec2::Zero()) right_ = left_ = d;
+    const bool left_of_right = cross(right_, d) >= 0;
+    const bool right_of_left = cross(d, left_) >= 0;
+    if (!left_of_right && !right_of_left) return false;
+    if (!left_of_right) right_ = d;
+    if (!right_of_left) left_ = d;
+    const auto less_than_half_turn = [](const Vec2& a, const Vec2& b) {
+      return cross(a, b) > rounding || a.dot(b) > 0;
+    };
+    return less_than_half_turn(right_, left_) && less_than_half_turn(right_, d);
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;
+  Vec2 right_ = Vec2::Zero();
+  Vec2 left_ = Vec2::Zero();
+};
 
 /// Merging is to last until the farthest point; paths along edges tell about how far that is.
 MergeLimits merge_limits(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
@@ -101,7 +131,7 @@ ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& source
   propagation.run(options.stop_distance, progress);
   data->distance = std::move(propagation.vertex_distances());
   data->root = std::move(propagation.vertex_roots());
-  data->emitted = std::move(propagation.emitted());
+  data->fans = std::move(propagation.fans());
   data->propagated = propagation.propagated();
   data->windows = propagation.windows().take(data->first_window);
   return ExactField(std::move(data));
@@ -175,30 +205,25 @@ bool ExactField::monotone_in_face(Index face) const {
   // axis everywhere.
   if (!data_->sources_in(face).empty()) return false;
   const auto& geometry = data_->geometry;
-  std::vector<Vec2> directions;
+  const Vec2 corners[] = {Vec2(0, 0), Vec2(geometry.length(3 * face), 0), geometry.apex(3 * face)};
+  DirectionCone cone;
   for (int i = 0; i < 3; ++i) {
     const Index h = 3 * face + i;
-    const Vec2 tail = geometry.in_frame(3 * face, Vec3::Unit(i));
-    const Vec2 head = geometry.in_frame(3 * face, Vec3::Unit((i + 1) % 3));
-    const Vec2 third = geometry.in_frame(3 * face, Vec3::Unit((i + 2) % 3));
-    if (data_->emitted[data_->mesh.triangle(face)[i]]) {
-      directions.push_back((head - tail).normalized());
-      directions.push_back((third - tail).normalized());
+    const Vec2 axis = (corners[(i + 1) % 3] - corners[i]) / geometry.length(h);
+    const auto add = [&](const Vec2& d) { return cone.add(axis * d.x() + Vec2(-axis.y(), axis.x()) * d.y()); };
+    const FanArc& fan = data_->fans[h];
+    for (const double angle : {fan.low, fan.high}) {
+      if (fan.low <= fan.high && !add(Vec2(std::cos(angle), std::sin(angle)))) return false;
     }
     const Index edge = data_->mesh.edge_of(h);
-    const Vec2 axis = (head - tail).normalized();
     const double sign = data_->mesh.halfedge_of(edge) == h ? 1 : -1;
-    data_->for_each_window(edge, [&](const Window& w) {
-      if (w.halfedge != h) return;
-      for (const double x : {w.begin, w.end}) {
-        const Vec2 d = sign * w.direction(x);
-        directions.push_back(axis * d.x() + Vec2(-axis.y(), axis.x()) * d.y());
-      }
-    });
+    for (Index id = data_->first_window[edge]; id < data_->first_window[edge + 1]; ++id) {
+      const Window& w = data_->windows[id];
+      if (w.halfedge != h) continue;
+      if (!add(sign * w.direction(w.begin)) || !add(sign * w.direction(w.end))) return false;
+    }
   }
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& d : directions) mean += d;
-  return std::all_of(directions.begin(), directions.end(), [&](const Vec2& d) { return d.dot(mean) > 0; });
+  return true;
 }
 
 std::vector<SurfacePoint> ExactField::shortest_path(const SurfacePoint& point) const {

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "isopath/field/edge_windows.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/source.h"
+#include "isopath/field/window_propagation.h"
 
 namespace isopath {
 
@@ -20,7 +20,14 @@ class ExactFieldData {
   void for_each_window(Index edge, Visit&& visit) const {
     for (Index id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
   }
-  std::span<const Index> sources_in(Index face) const {
+  /// A source element in the frame of half-edge 3·face of a face that it touches.
+  struct PlacedSource {
+    Index id = no_index;
+    Vec2 a = Vec2::Zero();
+    Vec2 b = Vec2::Zero();
+    double squared_length = 0;  ///< zero for a point
+  };
+  std::span<const PlacedSource> sources_in(Index face) const {
     return {face_sources.data() + first_source[face], face_sources.data() + first_source[face + 1]};
   }
 
@@ -28,11 +35,11 @@ class ExactFieldData {
   IntrinsicGeometry geometry;
   SourceSet sources;
   WindowPool windows;
-  std::vector<Index> first_window;  ///< per edge, and one past the last
-  std::vector<double> distance;     ///< per vertex
-  std::vector<Index> root;          ///< per vertex
-  std::vector<char> emitted;        ///< per vertex: source or pseudo-source
-  std::vector<Index> face_sources;  ///< element ids, face by face
+  std::vector<Index> first_window;         ///< per edge, and one past the last
+  std::vector<double> distance;            ///< per vertex
+  std::vector<Index> root;                 ///< per vertex
+  std::vector<FanArc> fans;                ///< per half-edge: what its tail, as a pseudo-source, sends into its face
+  std::vector<PlacedSource> face_sources;  ///< face by face, by id
   std::vector<std::size_t> first_source;
   std::size_t propagated = 0;
 };

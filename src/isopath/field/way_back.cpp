@@ -5,60 +5,91 @@
 namespace isopath {
 namespace {
 
-/// Where the straight way from p (y >= 0) to the window's source crosses the edge; the nearest point of the window
-/// where it misses it.
+/// Rays that miss a window's interval by more than this part of the edge are left to its neighbours: where two windows
+/// meet, the shortest way passes inside one of them, up to hair cracks from rounding.
+constexpr double widest_miss = 1e-2;
+
+/// A candidate way through an edge, in the frame of the edge's canonical half-edge.
 struct Crossing {
-  double x;
-  double distance;
-  Vec2 towards;
+  double x = 0;
+  double distance = infinity;
+  Vec2 towards = Vec2::Zero();
 };
 
-Crossing cross_window(const Window& w, const Vec2& p) {
+/// Improves `best` by the straight way from p to the window's source, or by way of the nearest point of the window
+/// where it misses it by a hair. p and the source lie on different sides of the edge.
+bool improve(const Window& w, const Vec2& p, double slack, Crossing& best) {
+  const bool is_point = w.kind == Window::Kind::point;
+  const Vec2 towards = is_point ? Vec2(w.source - p) : Vec2(-w.source);
   double x = p.x();
-  if (w.kind == Window::Kind::point) {
-    const double height = p.y() - w.source.y();
-    if (height > 0) x += (w.source.x() - p.x()) * (p.y() / height);
-    if (x >= w.begin && x <= w.end) return {x, w.offset + (p - w.source).norm(), w.source - p};
-  } else {
-    if (w.source.y() > 0) x -= w.source.x() / w.source.y() * p.y();
-    if (x >= w.begin && x <= w.end) return {x, w.offset + w.source.dot(p), -w.source};
+  if (towards.y() != 0) x -= towards.x() * (p.y() / towards.y());
+  if (x < w.begin - slack || x > w.end + slack) return false;
+  if (is_point) {  // the straight line is the least that it can be
+    const double left = best.distance - w.offset;
+    if (left <= 0 || towards.squaredNorm() >= left * left) return false;
+  }
+  if (x >= w.begin && x <= w.end) {
+    const double distance = is_point ? w.offset + towards.norm() : w.offset + w.source.dot(p);
+    if (!(distance < best.distance)) return false;
+    best = {x, distance, towards};
+    return true;
   }
   x = std::clamp(x, w.begin, w.end);
-  const Vec2 there(x, 0);
-  return {x, w.distance(x) + (p - there).norm(), there - p};
+  const Vec2 back = Vec2(x, 0) - p;
+  const double distance = w.distance(x) + back.norm();
+  if (!(distance < best.distance)) return false;
+  best = {x, distance, back};
+  return true;
 }
 
-void consider_sources(const ExactFieldData& data, Index face, const Vec3& barycentric, WayBack& best) {
-  const Vec2 p = data.geometry.in_frame(3 * face, barycentric);
-  for (const Index id : data.sources_in(face)) {
-    const SourceElement& element = data.sources.elements()[id];
-    // A point on an edge or vertex may be stored with a neighbouring face; so may a segment along an edge.
-    const Vec2 a = data.geometry.in_frame(3 * face, express_in(data.mesh, element.a, face).barycentric);
+void consider_sources(const ExactFieldData& data, Index face, const Vec2& p, WayBack& best) {
+  for (const ExactFieldData::PlacedSource& source : data.sources_in(face)) {
+    const Vec2 way = source.b - source.a;
     double t = 0;
-    Vec2 q = a;
-    if (element.kind == SourceElement::Kind::segment) {
-      const Vec2 b = data.geometry.in_frame(3 * face, express_in(data.mesh, element.b, face).barycentric);
-      const double squared = (b - a).squaredNorm();
-      if (squared > 0) t = std::clamp((p - a).dot(b - a) / squared, 0.0, 1.0);
-      q = a + t * (b - a);
-      // the ends belong to the points there
-      if ((t == 0 || t == 1) && best.distance <= (p - q).norm()) continue;
-    }
-    const double d = (p - q).norm();
-    if (d < best.distance) best = {d, id, WayBack::Stop::source, id, t, q - p};
+    if (source.squared_length > 0) t = std::clamp((p - source.a).dot(way) / source.squared_length, 0.0, 1.0);
+    const Vec2 towards = source.a + t * way - p;
+    const double squared = towards.squaredNorm();
+    // the ends of a segment belong to the points there
+    const bool at_end = source.squared_length > 0 && (t == 0 || t == 1);
+    const double bound = best.distance * best.distance;
+    if (at_end ? squared >= bound : squared > bound) continue;
+    const double distance = std::sqrt(squared);
+    if (distance < best.distance) best = {distance, source.id, WayBack::Stop::source, source.id, t, towards};
   }
 }
 
-void consider_corners(const ExactFieldData& data, Index face, const Vec3& barycentric, WayBack& best) {
-  const Vec2 p = data.geometry.in_frame(3 * face, barycentric);
+void consider_corners(const ExactFieldData& data, Index face, const Vec3& barycentric, const Vec2& p, WayBack& best) {
+  const auto& geometry = data.geometry;
+  const Vec2 corners[] = {Vec2(0, 0), Vec2(geometry.length(3 * face), 0), geometry.apex(3 * face)};
   for (int i = 0; i < 3; ++i) {
     if (barycentric[i] == 1) continue;
     const Index v = data.mesh.triangle(face)[i];
-    Vec3 corner = Vec3::Zero();
-    corner[i] = 1;
-    const Vec2 q = data.geometry.in_frame(3 * face, corner);
-    const double d = data.distance[v] + (p - q).norm();
-    if (d < best.distance) best = {d, data.root[v], WayBack::Stop::vertex, v, 0, q - p};
+    const Vec2 towards = corners[i] - p;
+    const double distance = data.distance[v] + towards.norm();
+    if (distance < best.distance) best = {distance, data.root[v], WayBack::Stop::vertex, v, 0, towards};
+  }
+}
+
+void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric, WayBack& best) {
+  const Index edge = data.mesh.edge_of(h);
+  const double length = data.geometry.length(h);
+  const bool canonical = data.mesh.halfedge_of(edge) == h;
+  Vec2 p = data.geometry.in_frame(h, barycentric);
+  if (!canonical) p = Vec2(length - p.x(), -p.y());
+  Crossing crossing;
+  crossing.distance = best.distance;
+  Index root = no_index;
+  bool found = false;
+  data.for_each_window(edge, [&](const Window& w) {
+    if (w.halfedge != h || !improve(w, p, widest_miss * length, crossing)) return;
+    found = true;
+    root = w.root;
+  });
+  if (!found) return;
+  best = {crossing.distance, root, WayBack::Stop::edge, h, crossing.x, crossing.towards};
+  if (!canonical) {
+    best.x = length - best.x;
+    best.towards = -best.towards;
   }
 }
 
@@ -66,23 +97,12 @@ void consider_corners(const ExactFieldData& data, Index face, const Vec3& baryce
 
 WayBack best_way_back(const ExactFieldData& data, Index face, const Vec3& barycentric, const SkippedEdges& skipped) {
   WayBack best;
-  consider_sources(data, face, barycentric, best);
-  consider_corners(data, face, barycentric, best);
   const auto& geometry = data.geometry;
+  const Vec2 p = geometry.in_frame(3 * face, barycentric);
+  consider_sources(data, face, p, best);
+  consider_corners(data, face, barycentric, p, best);
   for (int i = 0; i < 3; ++i) {
-    if (skipped.skip[i]) continue;
-    const Index h = 3 * face + i;
-    const Index edge = data.mesh.edge_of(h);
-    const bool canonical = data.mesh.halfedge_of(edge) == h;
-    const Vec2 p = geometry.in_frame(h, barycentric);
-    data.for_each_window(edge, [&](const Window& stored) {
-      if (stored.halfedge != h) return;
-      const Window w = canonical ? stored : stored.flipped(geometry.length(h));
-      const Crossing crossing = cross_window(w, p);
-      if (crossing.distance < best.distance) {
-        best = {crossing.distance, w.root, WayBack::Stop::edge, h, crossing.x, crossing.towards};
-      }
-    });
+    if (!skipped.skip[i]) consider_edge(data, 3 * face + i, barycentric, best);
   }
   if (best.stop == WayBack::Stop::edge && best.at != 3 * face) {
     // into the frame of half-edge 3·face

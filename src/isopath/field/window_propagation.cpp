@@ -41,7 +41,7 @@ WindowPropagation::WindowPropagation(const TriangleMesh& mesh, const IntrinsicGe
       root_(mesh.n_vertices(), no_index),
       arrival_(mesh.n_vertices()),
       settled_(mesh.n_vertices(), 0),
-      emitted_(mesh.n_vertices(), 0),
+      fans_(mesh.n_halfedges()),
       source_at_(mesh.n_vertices(), no_index),
       size_(mesh.size()) {
   start(sources);
@@ -135,10 +135,8 @@ double WindowPropagation::arrival_angle(Index vertex) const {
 void WindowPropagation::settle_vertex(Index vertex) {
   const double total = total_angle(vertex);
   if (source_at_[vertex] != no_index) {
-    emitted_[vertex] = 1;
     emit_fan(vertex, total, source_arcs_[source_at_[vertex]]);
   } else if (total > (mesh_.is_boundary_vertex(vertex) ? pi : 2 * pi) + angle_slack) {
-    emitted_[vertex] = 1;
     const BlockedArc shadowless{arrival_angle(vertex), pi - angle_slack};
     emit_fan(vertex, total, {&shadowless, 1});
   }
@@ -177,30 +175,31 @@ void WindowPropagation::follow_edges(Index vertex) {
 }
 
 void WindowPropagation::emit_fan(Index vertex, double total, std::span<const BlockedArc> blocked) {
-  const bool closed_fan = !mesh_.is_boundary_vertex(vertex);
+  const int turns = mesh_.is_boundary_vertex(vertex) ? 0 : 2;
   double start = 0;
   Index h = mesh_.outgoing(vertex);
   do {
     const double angle = geometry_.angle_at_tail(h);
-    // what the blocked arcs leave of [0, angle] in this face; two arcs leave at most three intervals
-    std::vector<std::pair<double, double>> open{{0.0, angle}};
-    for (const BlockedArc& arc : blocked) {
-      for (int turn = closed_fan ? -2 : 0; turn <= (closed_fan ? 2 : 0); ++turn) {
-        const double low = arc.angle - arc.half_width - start + turn * total;
-        const double high = arc.angle + arc.half_width - start + turn * total;
-        std::vector<std::pair<double, double>> rest;
-        for (const auto& [a, b] : open) {
-          if (high <= a || low >= b) {
-            rest.emplace_back(a, b);
-            continue;
-          }
-          if (low > a) rest.emplace_back(a, low);
-          if (high < b) rest.emplace_back(high, b);
+    // From one blocked arc to the next: what they leave of [0, angle] in this face. A fan has few arcs.
+    for (double low = 0; low < angle;) {
+      double high = angle;
+      double past = low;
+      for (const BlockedArc& arc : blocked) {
+        for (int turn = -turns; turn <= turns; ++turn) {
+          const double arc_low = arc.angle - arc.half_width - start + turn * total;
+          const double arc_high = arc.angle + arc.half_width - start + turn * total;
+          if (arc_low <= low && arc_high > past) past = arc_high;
+          if (arc_low > low) high = std::min(high, arc_low);
         }
-        open = std::move(rest);
       }
+      if (past > low) {
+        low = past;
+        continue;
+      }
+      fans_[h] = {std::min(fans_[h].low, low), std::max(fans_[h].high, high)};
+      emit_into_face(h, low > 0 ? low : -1, high < angle ? high : infinity);
+      low = high;
     }
-    for (const auto& [low, high] : open) emit_into_face(h, low > 0 ? low : -1, high < angle ? high : infinity);
     start += angle;
     h = mesh_.next_outgoing(h);
   } while (h != no_index && h != mesh_.outgoing(vertex));

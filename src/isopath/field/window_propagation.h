@@ -11,6 +11,12 @@
 
 namespace isopath {
 
+/// Directions, from a half-edge counter-clockwise, in which its tail sends a fan into its face; none when low > high.
+struct FanArc {
+  double low = infinity;
+  double high = -infinity;
+};
+
 /// Continuous Dijkstra over windows and vertices (paper ch. 4): events leave a queue in the order of their least
 /// distance; a window crosses its face onto the two other edges, a vertex around which the surface is not flat or
 /// convex becomes a pseudo-source.
@@ -28,8 +34,8 @@ class WindowPropagation {
   EdgeWindows& windows() { return windows_; }
   std::vector<double>& vertex_distances() { return distance_; }
   std::vector<Index>& vertex_roots() { return root_; }
-  /// Vertices that sent out a fan: sources and pseudo-sources.
-  std::vector<char>& emitted() { return emitted_; }
+  /// Per half-edge.
+  std::vector<FanArc>& fans() { return fans_; }
   std::size_t propagated() const { return propagated_; }
 
  private:
@@ -88,7 +94,7 @@ class WindowPropagation {
   std::vector<Index> root_;
   std::vector<Arrival> arrival_;
   std::vector<char> settled_;
-  std::vector<char> emitted_;
+  std::vector<FanArc> fans_;
   std::vector<std::vector<BlockedArc>> source_arcs_;  ///< of vertices that are sources: see source_at_
   std::vector<Index> source_at_;                      ///< per vertex: index into source_arcs_, or none
   std::priority_queue<Event, std::vector<Event>, std::greater<>> queue_;
