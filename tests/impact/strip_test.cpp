@@ -78,7 +78,7 @@ TEST(strip, has_the_least_total_rung_length_of_all_monotone_ways) {
     expect_monotone(strip, problem);
     double sum = 0;
     for (const auto& [i, j] : strip) sum += problem.rung(i, j);
-    EXPECT_NEAR(sum, least, 1e-5 * least) << "seed " << seed;
+    EXPECT_NEAR(sum, least, 1e-12 * least) << "seed " << seed;
   }
   EXPECT_GT(without, 50) << "the limit on the length of rungs was hardly tried";
 }

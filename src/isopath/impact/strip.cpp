@@ -25,13 +25,13 @@ Strip least_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q, double
   };
   enum Step : char { unseen, along_p, along_q, start };
   std::vector<char> step(static_cast<std::size_t>(m) * n, unseen);
-  std::vector<float> best(step.size(), std::numeric_limits<float>::infinity());
+  std::vector<double> best(step.size(), infinity);
   std::priority_queue<Node, std::vector<Node>, std::greater<>> open;
   const auto offer = [&](Index i, Index j, double cost, Step by) {
     cost += rung(i, j);
     const std::size_t at = static_cast<std::size_t>(i) * n + j;
     if (!(cost < best[at])) return;
-    best[at] = static_cast<float>(cost);
+    best[at] = cost;
     step[at] = by;
     open.push({cost + gap * ((m - 1 - i) + (n - 1 - j)), cost, i, j});
   };
@@ -40,7 +40,7 @@ Strip least_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q, double
     const Node node = open.top();
     open.pop();
     if (node.i == m - 1 && node.j == n - 1) break;
-    if (node.cost > best[static_cast<std::size_t>(node.i) * n + node.j] * (1 + 1e-6)) continue;
+    if (node.cost > best[static_cast<std::size_t>(node.i) * n + node.j]) continue;
     if (node.i + 1 < m) offer(node.i + 1, node.j, node.cost, along_p);
     if (node.j + 1 < n) offer(node.i, node.j + 1, node.cost, along_q);
   }
