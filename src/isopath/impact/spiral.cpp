@@ -16,6 +16,14 @@ struct Ring {
   std::vector<double> arc;  ///< fraction of the whole length at each point, 0 to 1
 };
 
+/// A point of the segment between two points that share a face.
+SurfacePoint between(const TriangleMesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double t) {
+  const Index face = common_face(mesh, a, b);
+  const SurfacePoint in_a = express_in(mesh, a, face);
+  const SurfacePoint in_b = express_in(mesh, b, face);
+  return {face, (1 - t) * in_a.barycentric + t * in_b.barycentric};
+}
+
 /// Points nearer than `shortest` to the last kept one are skipped, chords longer than `longest` divided: a strip needs
 /// rungs that are evenly spread, and no more of them than the spacing asks for.
 Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& start, double shortest, double longest) {
@@ -33,18 +41,11 @@ Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& sta
     }
     since_kept += chord;
     const int parts = static_cast<int>(std::ceil(chord / longest));
-    if (parts < 2) continue;
-    // the chord lies in one face: that of either end, or the one both share
     for (int k = 1; k < parts; ++k) {
       const double t = static_cast<double>(k) / parts;
-      const SurfacePoint& a = turned.points[i];
-      SurfacePoint between = a;
-      if (a.face == turned.points[next].face) {
-        between.barycentric = (1 - t) * a.barycentric + t * turned.points[next].barycentric;
-        ring.curve.add(mesh, between);
-      }
+      ring.curve.add(mesh, between(mesh, turned.points[i], turned.points[next], t));
+      since_kept = chord / parts;
     }
-    since_kept = 0;
   }
   const SurfacePoint first = ring.curve.points.front();
   ring.curve.add(mesh, first);
@@ -54,13 +55,6 @@ Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& sta
   }
   for (double& a : ring.arc) a /= std::max(ring.arc.back(), 1e-300);
   return ring;
-}
-
-SurfacePoint between(const TriangleMesh& mesh, const SurfacePoint& a, const SurfacePoint& b, double t) {
-  const Index face = common_face(mesh, a, b);
-  const SurfacePoint in_a = express_in(mesh, a, face);
-  const SurfacePoint in_b = express_in(mesh, b, face);
-  return {face, (1 - t) * in_a.barycentric + t * in_b.barycentric};
 }
 
 /// The point of a rung, a short curve on the surface that rises or falls from one contour to the next, where the
@@ -156,10 +150,17 @@ SurfaceCurve spiral(const SurfaceLinker& linker, const SurfaceFunction& function
                     std::span<const Contour* const> contours, const Vec3& start) {
   SpiralBuilder builder(linker, function);
   builder.walk_whole(*contours.front(), start);
+  bool whole = true;  // the last contour was walked all round
   for (std::size_t k = 1; k < contours.size(); ++k) {
-    if (!builder.turn(*contours[k - 1], *contours[k], 2)) builder.walk_whole(*contours[k], builder.end());
+    if (builder.turn(*contours[k - 1], *contours[k], 2)) {
+      whole = false;
+      continue;
+    }
+    if (!whole) builder.walk_whole(*contours[k - 1], builder.end());
+    builder.walk_whole(*contours[k], builder.end());
+    whole = true;
   }
-  if (contours.size() > 1) builder.walk_whole(*contours.back(), builder.end());
+  if (!whole) builder.walk_whole(*contours.back(), builder.end());
   return builder.take();
 }
 
