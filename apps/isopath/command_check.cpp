@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +25,22 @@ struct CheckArguments {
   std::string mesh;
   std::string unit = "mm";
   bool self_intersections = false;
+  bool strict = false;
   bool repair = false;
   RepairOptions repairs;
   std::string output;
 };
 
 using Json = nlohmann::ordered_json;
+
+/// What the file holds, and what is left of it to plan on.
+struct Findings {
+  std::vector<std::string> notes;
+  MeshReport file;
+  std::optional<RepairResult> repaired;  ///< none: nothing usable is in the file
+  MeshReport after;                      ///< of `repaired`
+  std::string why_unusable;
+};
 
 Json report_json(const MeshReport& report) {
   Json loops = Json::array();
@@ -57,10 +69,65 @@ Json report_json(const MeshReport& report) {
           {"defects", std::move(defects)}};
 }
 
-Json changes_json(const std::vector<RepairChange>& changes) {
-  Json list = Json::array();
-  for (const RepairChange& change : changes) list.push_back({{"what", change.what}, {"count", change.count}});
-  return list;
+/// The figures of the file as it is; those after repair stand under `repaired`.
+Json findings_json(const Findings& findings, const CheckArguments& arguments) {
+  Json json = report_json(findings.file);
+  json["notes"] = findings.notes;
+  json["usable"] = findings.repaired.has_value();
+  Json changes = Json::array();
+  if (findings.repaired) {
+    for (const RepairChange& change : findings.repaired->changes) {
+      changes.push_back({{"what", change.what}, {"count", change.count}});
+    }
+  }
+  json["changes"] = std::move(changes);
+  json["repaired"] = findings.repaired ? report_json(findings.after) : Json();
+  if (arguments.repair) json["output"] = findings.repaired ? Json(arguments.output) : Json();
+  return json;
+}
+
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+std::string total_length(const MeshReport& report) {
+  double length = 0;
+  for (const BoundaryLoop& loop : report.boundary_loops) length += loop.length;
+  return fmt::format("{:.6g} mm", length);
+}
+
+/// One line a figure: as the file has it and, where a repair changes the mesh, what it is then.
+std::string figures_text(const MeshReport& file, const MeshReport* after) {
+  std::string text = after ? fmt::format("{:<18}{:>16}{:>16}\n", "", "in the file", "after repair") : "";
+  const auto row = [&](const char* name, const auto& figure) {
+    text += fmt::format("{:<18}{:>16}", name, figure(file));
+    text += after ? fmt::format("{:>16}\n", figure(*after)) : "\n";
+  };
+  row("triangles", [](const MeshReport& r) { return fmt::format("{}", r.triangles); });
+  row("vertices", [](const MeshReport& r) { return fmt::format("{}", r.vertices); });
+  row("edges", [](const MeshReport& r) { return fmt::format("{}", r.edges); });
+  row("area", [](const MeshReport& r) { return fmt::format("{:.6g} mm²", r.area); });
+  row("size", [](const MeshReport& r) {
+    return fmt::format("{:.6g} mm", r.bounds.isEmpty() ? 0 : r.bounds.diagonal().norm());
+  });
+  row("components", [](const MeshReport& r) { return fmt::format("{}", r.components); });
+  row("boundary loops", [](const MeshReport& r) { return fmt::format("{}", r.boundary_loops.size()); });
+  row("boundary length", total_length);
+  row("genus", [](const MeshReport& r) { return r.genus ? fmt::format("{}", *r.genus) : std::string("-"); });
+  row("closed", [](const MeshReport& r) { return yes_or_no(r.closed); });
+  row("manifold", [](const MeshReport& r) { return yes_or_no(r.manifold); });
+  row("orientable", [](const MeshReport& r) { return yes_or_no(r.orientable); });
+  return text;
+}
+
+std::string loops_text(const std::vector<BoundaryLoop>& loops) {
+  constexpr std::size_t listed = 20;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(listed, loops.size()); ++k) {
+    const std::string name = fmt::format("boundary:{}", k);
+    text += fmt::format("{:<18}{:>13.6g} mm{:>10} edges{}\n", name, loops[k].length, loops[k].edges,
+                        loops[k].closed ? "" : ", ends at a non-manifold edge");
+  }
+  if (loops.size() > listed) text += fmt::format("... and {} more, see --json\n", loops.size() - listed);
+  return text;
 }
 
 std::string element_text(const std::vector<std::vector<Index>>& first) {
@@ -69,23 +136,49 @@ std::string element_text(const std::vector<std::vector<Index>>& first) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string report_text(const MeshReport& report) {
-  std::string text = fmt::format("{} triangles, {} vertices, area {:.6g} mm², {} component{}\n", report.triangles,
-                                 report.vertices, report.area, report.components, report.components == 1 ? "" : "s");
-  text +=
-      fmt::format("{}, {}, {}{}\n", report.closed ? "closed" : "open", report.manifold ? "manifold" : "not manifold",
-                  report.orientable ? "orientable" : "not orientable",
-                  report.genus ? fmt::format(", genus {}", *report.genus) : "");
-  for (std::size_t k = 0; k < report.boundary_loops.size(); ++k) {
-    const BoundaryLoop& loop = report.boundary_loops[k];
-    text += fmt::format("boundary {}: {:.6g} mm, {} edges\n", k, loop.length, loop.edges);
-  }
-  for (const Defect& defect : report.defects) {
+std::string findings_text(const Findings& findings, const CheckArguments& arguments) {
+  const bool changed = findings.repaired && !findings.repaired->changes.empty();
+  std::string text = figures_text(findings.file, changed ? &findings.after : nullptr);
+  text += loops_text((changed ? findings.after : findings.file).boundary_loops);
+  for (const Defect& defect : findings.file.defects) {
     text += fmt::format("{}: {} × {}, first: {}\n", name_of(defect.severity), defect.count, name_of(defect.kind),
                         element_text(defect.first));
   }
-  text += report.sound() ? "ready to plan on\n" : "not ready: 'isopath plan' repairs it, or use --repair -o OUT\n";
-  return text;
+  if (changed) {
+    for (const RepairChange& change : findings.repaired->changes) {
+      text += fmt::format("repair: {} ({})\n", change.what, change.count);
+    }
+  }
+  if (!findings.repaired) return text + "not usable\n";
+  if (arguments.repair) return text + (changed ? "repaired" : "nothing to repair") + ": " + arguments.output + "\n";
+  return text + (changed ? "ready to plan on: 'isopath plan' makes these repairs by itself\n" : "ready to plan on\n");
+}
+
+Findings examine(const CheckArguments& arguments, ConsoleProgress& progress) {
+  MeshFile file =
+      read_mesh(arguments.mesh, {.weld = false, .unit_mm = millimetres_in(unit_of(arguments.unit))}, progress);
+  Findings findings;
+  findings.notes = std::move(file.notes);
+  progress.stage("check");
+  findings.file = check_mesh(file.soup, {.self_intersections = arguments.self_intersections}, progress);
+  progress.stage("repair");
+  try {
+    findings.repaired = repair_mesh(std::move(file.soup), arguments.repairs, progress);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_input) throw;
+    findings.why_unusable = error.what();
+    return findings;
+  }
+  findings.after = check_mesh(findings.repaired->soup, {}, progress);
+  return findings;
+}
+
+void require_writable_format(const std::string& output) {
+  const std::string extension = extension_of(output);
+  for (const char* known : {".stl", ".obj", ".ply", ".off"}) {
+    if (extension == known) return;
+  }
+  refuse_value("option -o", output, "a file name that ends in .stl, .obj, .ply or .off");
 }
 
 void run_check(const CheckArguments& arguments, const CommonFlags& flags) {
@@ -93,27 +186,21 @@ void run_check(const CheckArguments& arguments, const CommonFlags& flags) {
     throw Error(ErrorCode::bad_usage, "--repair and -o go together",
                 {.advice = "give both to write the mended mesh, or none to look only"});
   }
-  ConsoleProgress progress(flags.quiet);
-  MeshFile file =
-      read_mesh(arguments.mesh, {.weld = false, .unit_mm = millimetres_in(unit_of(arguments.unit))}, progress);
-  print_warnings(flags, file.notes);
-  progress.stage("check");
-  const MeshReport report = check_mesh(file.soup, {.self_intersections = arguments.self_intersections}, progress);
-  Json json = report_json(report);
-  json["notes"] = file.notes;
-  std::string text = report_text(report);
-  if (arguments.repair) {
-    progress.stage("repair");
-    const RepairResult repaired = repair_mesh(std::move(file.soup), arguments.repairs, progress);
+  if (arguments.repair) require_writable_format(arguments.output);
+  Findings findings;
+  {
+    ConsoleProgress progress(flags.quiet);
+    findings = examine(arguments, progress);
     progress.checkpoint();
-    write_mesh(arguments.output, repaired.soup);
-    json["changes"] = changes_json(repaired.changes);
-    json["output"] = arguments.output;
-    for (const RepairChange& change : repaired.changes)
-      text += fmt::format("repaired: {} ({})\n", change.what, change.count);
-    if (repaired.changes.empty()) text += "nothing to repair\n";
   }
-  print(flags.json ? json.dump(2) + "\n" : text);
+  if (arguments.repair && findings.repaired) write_mesh(arguments.output, findings.repaired->soup);
+  print_warnings(flags, findings.notes);
+  print(flags.json ? findings_json(findings, arguments).dump(2) + "\n" : findings_text(findings, arguments));
+  if (!findings.repaired) throw Error(ErrorCode::bad_input, findings.why_unusable, {.file = arguments.mesh});
+  if (arguments.strict && !findings.file.sound()) {
+    throw Error(ErrorCode::bad_input, "the mesh needs repair",
+                {.file = arguments.mesh, .advice = "mend it with --repair -o OUT, or leave out --strict"});
+  }
 }
 
 }  // namespace
@@ -124,6 +211,7 @@ void add_check(CLI::App& app, CommonFlags& flags, Action& action) {
   command->add_option("MESH", arguments->mesh, "STL, OBJ, PLY, OFF, STEP or IGES")->required();
   add_unit(*command, arguments->unit);
   command->add_flag("--self-intersections", arguments->self_intersections, "Look for triangles that cross, too");
+  command->add_flag("--strict", arguments->strict, "Exit status 3 when the mesh needs repair, too");
   command->add_flag("--repair", arguments->repair, "Mend the mesh and write it to the file of -o");
   command->add_option("-o,--output", arguments->output, "The mended mesh: .stl, .obj, .ply or .off, in mm");
   command->add_flag("--largest-component", arguments->repairs.largest_component,
@@ -131,13 +219,18 @@ void add_check(CLI::App& app, CommonFlags& flags, Action& action) {
   command
       ->add_option("--fill-holes", arguments->repairs.fill_holes_length,
                    "With --repair: close boundary loops no longer than this, mm")
+      ->check(number_from_0())
       ->capture_default_str();
   add_common_flags(*command, flags);
   command->footer(
       "Examples:\n"
       "  isopath check scan.stl\n"
       "  isopath check scan.stl --json > scan.json\n"
-      "  isopath check scan.stl --repair --fill-holes 20 -o mended.ply");
+      "  isopath check scan.stl --strict --quiet > /dev/null || echo 'needs repair'\n"
+      "  isopath check scan.stl --repair --fill-holes 20 -o mended.ply\n\n"
+      "Exit status: 0 when 'isopath plan' can use the mesh as it is or after the repairs it makes by itself,\n"
+      "3 when the file cannot be read or holds no usable triangle. With --strict only a mesh without errors\n"
+      "gives 0. Loops are numbered as in --source boundary:K, elements from 0 as in the file.");
   command->callback([&flags, &action, arguments] { action = [&flags, arguments] { run_check(*arguments, flags); }; });
 }
 

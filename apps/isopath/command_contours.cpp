@@ -108,9 +108,6 @@ void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) 
   if (extension != ".vtp" && extension != ".json") {
     refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .json");
   }
-  if (!(arguments.spacing > 0) || arguments.spacing == infinity) {
-    refuse_value("option --spacing", fmt::format("{}", arguments.spacing), "a number above 0");
-  }
   const auto specs = parse_sources(arguments.input.sources);
   ConsoleProgress progress(flags.quiet);
   const Part part = load(arguments.input, progress);
@@ -143,7 +140,9 @@ void add_contours(CLI::App& app, CommonFlags& flags, Action& action) {
   const auto arguments = std::make_shared<ContoursArguments>();
   add_mesh(*command, arguments->input);
   add_sources(*command, arguments->input.sources);
-  command->add_option("--spacing", arguments->spacing, "Distance from line to line, mm")->required();
+  command->add_option("--spacing", arguments->spacing, "Distance from line to line, mm")
+      ->check(number_above_0())
+      ->required();
   command
       ->add_option("-o,--output", arguments->output, ".vtp: polylines with level and run; .json: points and the graph")
       ->required();

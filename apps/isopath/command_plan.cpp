@@ -48,8 +48,9 @@ void replace(Value& value, const std::optional<Value>& given) {
 double ball_diameter_of(const std::string& text) {
   constexpr std::string_view prefix = "ball:";
   double diameter = 0;
-  if (!text.starts_with(prefix) || !CLI::detail::lexical_cast(text.substr(prefix.size()), diameter)) {
-    refuse_value("option --tool", text, "ball:DIAMETER, for example ball:10");
+  if (!text.starts_with(prefix) || !number_above_0()(text.substr(prefix.size())).empty() ||
+      !CLI::detail::lexical_cast(text.substr(prefix.size()), diameter)) {
+    refuse_value("option --tool", text, "ball:DIAMETER with a diameter above 0, for example ball:10");
   }
   return diameter;
 }
@@ -127,8 +128,10 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
       ->expected(3)
       ->default_str("1,0,0");
   command.add_option("--spacing", given.spacing, "Distance between neighbouring passes, mm")
+      ->check(number_above_0())
       ->default_str("1/60 of the part's size");
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
+      ->check(number_above_0())
       ->default_str("the spacing");
 }
 
@@ -139,15 +142,20 @@ void add_tool_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--tool", given.tool, "mill, grind: ball:DIAMETER, mm")
       ->default_str("ball:" + text(defaults.ball_diameter));
   command.add_option("--stand-off", given.stand_off, "spray: distance of the nozzle, mm")
+      ->check(number_above_0())
       ->default_str(text(defaults.stand_off));
   command.add_option("--axis", given.axis, "Keep the tool's axis fixed to X,Y,Z (3 axes) instead of along the normal")
       ->delimiter(',')
       ->expected(3);
   command.add_option("--feed", given.feed, "Along covering moves, mm/min")
+      ->check(number_above_0())
       ->default_str(text(defaults.cover_feed_mm_per_min));
   command.add_option("--link-feed", given.link_feed, "Along links, mm/min")
+      ->check(number_above_0())
       ->default_str(text(defaults.link_feed_mm_per_min));
-  command.add_option("--rapid", given.rapid, "Along lifts, mm/min")->default_str(text(defaults.rapid_speed_mm_per_min));
+  command.add_option("--rapid", given.rapid, "Along lifts, mm/min")
+      ->check(number_above_0())
+      ->default_str(text(defaults.rapid_speed_mm_per_min));
 }
 
 std::string format_names() {
@@ -163,12 +171,14 @@ void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
   const auto arguments = std::make_shared<PlanArguments>();
   command->add_option("INPUT", arguments->input, "A mesh (STL, OBJ, PLY, OFF, STEP, IGES), or a job file (.yaml)")
       ->type_name("MESH|JOB.yaml")
+      ->check(not_empty())
       ->required();
   command
       ->add_option("-o,--output", arguments->output,
                    "Folder for summary.json, impact.csv, tool.csv, path.vtp, the program, job.yaml and report.html;\n"
                    "other files in it stay")
       ->type_name("DIR")
+      ->check(not_empty())
       ->required();
   command->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m or inch")->default_str("mm");
   add_path_options(*command, *arguments);

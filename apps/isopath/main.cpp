@@ -1,8 +1,25 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
+
+namespace {
+
+std::string failure_message(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<std::string> unknown = app->remaining();
+  if (app->get_subcommands().empty() && !unknown.empty()) {
+    return fmt::format("isopath: error: there is no command '{}'\n  'isopath --help' lists them\n", unknown.front());
+  }
+  std::string command = "isopath";
+  for (const CLI::App* parsed : app->get_subcommands()) command += " " + parsed->get_name();
+  return fmt::format("isopath: error: {}\n  '{} --help' tells what is allowed\n", error.what(), command);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace isopath::app;
@@ -18,6 +35,7 @@ int main(int argc, char** argv) {
       "'isopath COMMAND --help' explains a command with examples.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 no plan possible, 130 interrupted, 1 a fault of isopath.");
   app.require_subcommand(1);
+  app.failure_message(failure_message);
 
   CommonFlags flags;
   Action action;

@@ -4,11 +4,29 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "isopath/core/error.h"
 
 namespace isopath::app {
+namespace {
+
+CLI::Validator number_that(bool (*allows)(double), const char* allowed) {
+  const auto complaint = [allows, allowed](std::string& text) {
+    double value = 0;
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    if (whole && std::isfinite(value) && allows(value)) return std::string();
+    return fmt::format("'{}' is not {}", text, allowed);
+  };
+  return {complaint, ""};
+}
+
+}  // namespace
 
 void add_mesh(CLI::App& command, MeshInput& input) {
   command.add_option("MESH", input.mesh, "The part: STL, OBJ, PLY, OFF, STEP or IGES")->required();
@@ -47,6 +65,18 @@ void refuse_value(std::string_view option, std::string_view value, std::string_v
               {.element = std::string(option),
                .value = fmt::format("'{}'", value),
                .advice = fmt::format("allowed: {}", allowed)});
+}
+
+CLI::Validator number_above_0() {
+  return number_that([](double value) { return value > 0; }, "a number above 0");
+}
+
+CLI::Validator number_from_0() {
+  return number_that([](double value) { return value >= 0; }, "a number from 0");
+}
+
+CLI::Validator not_empty() {
+  return {[](std::string& text) { return std::string(text.empty() ? "empty, where a name belongs" : ""); }, ""};
 }
 
 std::string source_help() { return fmt::format("SRC is one of\n{}\n", source_spec_forms()); }

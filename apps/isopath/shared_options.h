@@ -30,6 +30,12 @@ std::string extension_of(const std::string& path);
 /// Throws Error(bad_usage) that lists what an option takes.
 [[noreturn]] void refuse_value(std::string_view option, std::string_view value, std::string_view allowed);
 
+/// Checks of an option's number while the command line is read: finite, and above 0 or at least 0.
+CLI::Validator number_above_0();
+CLI::Validator number_from_0();
+/// Refuses an empty text.
+CLI::Validator not_empty();
+
 /// Explains SRC at the end of a command's help.
 std::string source_help();
 

@@ -212,6 +212,34 @@ class Check(Program):
         self.assertEqual(run("check", broken, "--repair").returncode, USAGE)
 
 
+    def test_a_mesh_that_planning_repairs_is_usable_but_not_strictly(self):
+        broken = self.path("broken.off")
+        self.write(broken, "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 3 2\n")
+        result = run("check", broken, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertFalse(report["sound"])
+        self.assertTrue(report["usable"])
+        self.assertTrue(report["repaired"]["sound"])
+        strict = run("check", broken, "--strict", "--json")
+        self.assertEqual(strict.returncode, INPUT)
+        self.assertEqual(json.loads(strict.stdout), report)
+        self.assertIn("needs repair", strict.stderr)
+        self.assertEqual(run("check", self.plane, "--strict").returncode, OK)
+
+    def test_a_mesh_without_surface_is_not_usable(self):
+        flat = self.path("flat.off")
+        self.write(flat, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n")
+        result = run("check", flat, "--json")
+        self.assertEqual(result.returncode, INPUT)
+        self.assertFalse(json.loads(result.stdout)["usable"])
+        self.assertIn("flat.off", result.stderr)
+        mended = self.path("mended.off")
+        self.assertEqual(run("check", flat, "--repair", "-o", mended).returncode, INPUT)
+        self.assertFalse(os.path.exists(mended))
+        self.assert_refused(run("check", flat, "--repair", "-o", self.path("m.xyz")), USAGE, ".ply")
+
+
 class Plan(Program):
     PARTS = ["summary.json", "impact.csv", "tool.csv", "path.vtp", "job.yaml", "report.html"]
 
@@ -266,6 +294,36 @@ class Plan(Program):
         self.assert_refused(run("plan", job, "-o", self.path("out")), INPUT, "job.yaml: line 2: spacings", "spacing,")
         self.assert_refused(run("plan", self.plane, "--spacing", -1, "-o", self.path("out")), USAGE, "spacing", "-1")
         self.assertFalse(os.path.exists(self.path("out")))
+
+
+    def test_lengths_that_cannot_be_meant_are_refused(self):
+        out = self.path("out")
+        for option in ["--spacing", "--clearance", "--stand-off", "--feed", "--link-feed", "--rapid"]:
+            for value in ["nan", "inf", "-1", "0", "", "x", "1e999", "3mm"]:
+                self.assert_refused(run("plan", self.plane, option, value, "-o", out), USAGE, option, f"'{value}'")
+        self.assert_refused(run("plan", self.plane, "--tool", "ball:-3", "-o", out), USAGE, "ball:-3")
+        # 25 mm from the rim to the middle.
+        self.assert_refused(run("plan", self.plane, "--spacing", 1e-9, "-o", out), USAGE, "1e-09 mm", "limit 20000")
+        self.assert_refused(run("plan", self.plane, "--spacing", 95, "-o", out), NO_PLAN, "95 mm", "94.3398 mm")
+        self.assert_refused(run("plan", self.plane, "--clearance", 1e6, "-o", out), USAGE, "clearance", "limit 94339.8")
+        self.assert_refused(run("plan", self.plane, "-o", ""), USAGE, "--output")
+        self.assertFalse(os.path.exists(out))
+
+    def test_an_empty_mesh_is_bad_input_and_every_component_is_covered(self):
+        empty, two = self.path("empty.off"), self.path("two.off")
+        self.write(empty, "OFF\n0 0 0\n")
+        self.assert_refused(run("plan", empty, "-o", self.path("out")), INPUT, "empty.off", "no triangles")
+        square = "{0} 0 0\n{1} 0 0\n{1} 20 0\n{0} 20 0\n"
+        self.write(two, "OFF\n8 4 0\n" + square.format(0, 20) + square.format(50, 70)
+                   + "3 0 1 2\n3 0 2 3\n3 4 5 6\n3 4 6 7\n")
+        result = self.plan(two, "--source", "plane:0,1,0,0", "--spacing", 2, "-o", self.path("out"), "--json")
+        summary = json.loads(result.stdout)
+        self.assertAlmostEqual(summary["area"], 800)
+        self.assertGreater(summary["covered_fraction"], 0.99)
+        self.assertGreaterEqual(summary["lifts"], 1)
+        result = self.plan(two, "--source", "vertex:0", "--spacing", 2, "-o", self.path("out"), "--json")
+        self.assertLess(json.loads(result.stdout)["covered_fraction"], 0.51)
+        self.assertIn("1 of the part's 2 components", result.stderr)
 
 
 class Interrupt(Program):

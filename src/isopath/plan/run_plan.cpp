@@ -22,6 +22,12 @@ namespace {
 /// Shares of the part's size that are taken where the job names no spacing.
 constexpr double passes_over_size = 60;
 
+/// So many passes across a part of a metre lie 0.05 mm apart, finer than any finishing. More of them are a slip of the
+/// keyboard or of the unit, and would run for days.
+constexpr double most_passes = 20000;
+/// Lifts higher than so many sizes of the part leave no digits for the part itself.
+constexpr double most_clearance_over_size = 1000;
+
 class StageClock {
  public:
   explicit StageClock(std::vector<StageTime>& times) : times_(times) {}
@@ -51,6 +57,40 @@ double spacing_of(const Job& job, const TriangleMesh& mesh, std::vector<std::str
   warnings.push_back(
       fmt::format("no spacing was given: {} mm was taken, 1/{:.0f} of the part's size", spacing, passes_over_size));
   return spacing;
+}
+
+/// Refuses lengths that cannot be meant for a part of this size.
+void check_against_size(const Job& job, double spacing, double size) {
+  if (spacing > size) {
+    throw Error(ErrorCode::no_plan, "the spacing is larger than the part",
+                {.element = "spacing",
+                 .value = fmt::format("{:.6g} mm, the part measures {:.6g} mm", spacing, size),
+                 .advice = "give a smaller spacing, or the unit of the mesh file when that is not mm"});
+  }
+  if (job.clearance > most_clearance_over_size * size) {
+    throw Error(ErrorCode::bad_usage, "lifts this high leave the part out of sight",
+                {.element = "clearance",
+                 .value = fmt::format("{:.6g} mm, limit {:.6g} mm: {} times the part's size", job.clearance,
+                                      most_clearance_over_size * size, most_clearance_over_size)});
+  }
+}
+
+/// Refuses a spacing that gives more passes than anybody wants.
+void check_pass_count(const std::vector<double>& values, double spacing) {
+  double low = infinity;
+  double high = -infinity;
+  for (const double value : values) {
+    if (!(value < infinity)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(high - low > most_passes * spacing)) return;
+  throw Error(
+      ErrorCode::bad_usage, "the spacing is too small for the part",
+      {.element = "spacing",
+       .value = fmt::format("{:.6g} mm makes {:.3g} passes, limit {}", spacing, (high - low) / spacing, most_passes),
+       .advice = fmt::format("give {:.3g} mm or more, or the unit of the mesh file when that is not mm",
+                             1.001 * (high - low) / most_passes)});
 }
 
 struct Field {
@@ -121,7 +161,9 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   clock.ends("read");
 
   result.spacing = spacing_of(job, mesh, result.warnings);
+  check_against_size(job, result.spacing, mesh.size());
   Field field = field_of(job, result.part, progress);
+  check_pass_count(field.at_vertices, result.spacing);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
   clock.ends("field");
 
