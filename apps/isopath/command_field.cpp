@@ -14,6 +14,7 @@
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/fast_marching.h"
 #include "isopath/field/graph_field.h"
 #include "isopath/mesh/write_mesh.h"
 #include "isopath/mesh/write_vtp.h"
@@ -95,8 +96,8 @@ nlohmann::ordered_json way_json(const Way& way) {
 }
 
 void check(const FieldArguments& arguments) {
-  if (arguments.method != "exact" && arguments.method != "graph") {
-    refuse_value("option --method", arguments.method, "exact, graph");
+  if (arguments.method != "exact" && arguments.method != "fast-marching" && arguments.method != "graph") {
+    refuse_value("option --method", arguments.method, "exact, fast-marching, graph");
   }
   if (arguments.method != "exact" && !arguments.path_to.empty()) {
     refuse_value("option --method", arguments.method, "exact, since --path-to traces shortest paths through windows");
@@ -117,6 +118,7 @@ struct Distances {
 
 Distances distances_of(const FieldArguments& arguments, const Part& part, const SourceSet& sources,
                        Progress& progress) {
+  if (arguments.method == "fast-marching") return {fast_marching_distances(part.mesh, sources, progress), {}};
   if (arguments.method == "graph") {
     return {graph_distances(part.mesh, sources, {.virtual_vertices = 0, .across_pairs = true}, progress), {}};
   }
@@ -165,8 +167,11 @@ void add_field(CLI::App& app, CommonFlags& flags, Action& action) {
   add_sources(*command, arguments->input.sources);
   command
       ->add_option("--method", arguments->method,
-                   "exact: true distances on the polyhedral surface;\ngraph: along edges and across pairs of faces, "
-                   "never too short")
+                   "exact: true distances on the polyhedral surface;\n"
+                   "fast-marching: error about h (1 + ln(d/h)) / 8 at distance d for edges of length h (an estimate\n"
+                   "for well-shaped triangles), to either side;\n"
+                   "graph: along edges and across pairs of faces, never too short, and too long by no more than h\n"
+                   "for every edge that the shortest path crosses")
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output,
                       ".csv: one value a line in the vertex order of the file; .ply, .vtp: the mesh with 'distance'");

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(failure_message);
 
+  listen_for_interrupts();
   CommonFlags flags;
   Action action;
   add_plan(app, flags, action);
@@ -50,6 +51,5 @@ int main(int argc, char** argv) {
     constexpr int wrong_usage = 2;
     return app.exit(error) == 0 ? 0 : wrong_usage;
   }
-  listen_for_interrupts();
   return run(flags, action);
 }

@@ -124,6 +124,18 @@ class Field(Program):
         for (x, y, _), d in zip(self.vertices, self.distances("--source", "plane:1,0,0,33", "--source", "point:80,50,7")):
             self.assertAlmostEqual(d, min(abs(x - 33), math.hypot(x - 80, y - 50)), delta=1e-10)
 
+    def test_the_fast_methods_come_close_to_the_exact_distance(self):
+        straight = self.distances("--source", "plane:1,0,0,0", "--method", "fast-marching")
+        for (x, _, _), d in zip(self.vertices, straight):
+            self.assertAlmostEqual(d, x, delta=1e-10)
+        exact, marched, graph = (
+            self.distances("--source", "vertex:0", "--method", method) for method in ("exact", "fast-marching", "graph"))
+        longest = 10 * math.sqrt(2)
+        for true, m, g in zip(exact, marched, graph):
+            self.assertGreaterEqual(g, true - 1e-9)
+            self.assertLessEqual(abs(m - true), longest)
+            self.assertLessEqual(g, 1.1 * true)
+
     def test_a_broken_part_is_repaired_and_the_changes_are_said(self):
         broken, out = self.path("broken.off"), self.path("d.csv")
         # The second triangle is the wrong way round, the last is there twice.

@@ -2,22 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <functional>
 #include <queue>
 #include <utility>
 
 #include "isopath/core/error.h"
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/source_faces.h"
 
 namespace isopath {
 namespace {
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const double squared = (b - a).squaredNorm();
-  const double t = squared > 0 ? std::clamp((p - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return (p - a - t * (b - a)).norm();
-}
 
 /// Nodes are the vertices, then `k` points on every edge. Arcs join the nodes of a face; they are not stored.
 class SurfaceGraph {
@@ -34,7 +28,6 @@ class SurfaceGraph {
 
  private:
   void join_across_pairs();
-  void start_in_face(const SourceElement& element, Index face);
   Vec3 position(Index node) const;
   void relax(Index node, double distance);
   void visit_face(Index node, Index face);
@@ -80,25 +73,15 @@ void SurfaceGraph::relax(Index node, double distance) {
   queue_.emplace(distance, node);
 }
 
-void SurfaceGraph::start_in_face(const SourceElement& element, Index face) {
-  const Vec3 a = position_of(mesh_, element.a);
-  const Vec3 b = element.kind == SourceElement::Kind::segment ? position_of(mesh_, element.b) : a;
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-    relax(mesh_.from(h), distance_to_segment(mesh_.position(mesh_.from(h)), a, b));
-    const Index first = mesh_.n_vertices() + mesh_.edge_of(h) * options_.virtual_vertices;
-    for (Index node = first; node < first + options_.virtual_vertices; ++node) {
-      relax(node, distance_to_segment(position(node), a, b));
-    }
-  }
-}
-
 void SurfaceGraph::start(const SourceElement& element) {
-  start_in_face(element, element.a.face);
-  for (int i = 0; i < 3; ++i) {
-    const bool on_edge =
-        element.a.barycentric[i] == 0 && (element.kind == SourceElement::Kind::point || element.b.barycentric[i] == 0);
-    const Index twin = mesh_.twin(3 * element.a.face + (i + 1) % 3);
-    if (on_edge && twin != no_index) start_in_face(element, TriangleMesh::face_of(twin));
+  for (const Index face : faces_of(mesh_, element)) {
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      relax(mesh_.from(h), distance_in_face(mesh_, element, mesh_.position(mesh_.from(h))));
+      const Index first = mesh_.n_vertices() + mesh_.edge_of(h) * options_.virtual_vertices;
+      for (Index node = first; node < first + options_.virtual_vertices; ++node) {
+        relax(node, distance_in_face(mesh_, element, position(node)));
+      }
+    }
   }
 }
 
