@@ -180,6 +180,17 @@ TEST(FieldAccuracy, PlanesNeedOneWindowASide) {
   EXPECT_LT(ExactField::compute(plane, sources).windows_kept(), 3 * static_cast<std::size_t>(plane.n_edges()));
 }
 
+TEST(FieldAccuracy, FacesAwayFromTheRidgeAreMonotone) {
+  // From the boundary, fronts pass most faces in about one direction: pseudo-sources at corners must not hide that.
+  const TriangleMesh wavy = wavy_sheet(60, 100, 10, 0.06, 0.05, 1);
+  for (const double accuracy : {0.0, 1e-6}) {
+    const ExactField field = ExactField::compute(wavy, boundary_source(wavy), {.accuracy = accuracy * wavy.size()});
+    Index monotone = 0;
+    for (Index face = 0; face < wavy.n_faces(); ++face) monotone += field.monotone_in_face(face) ? 1 : 0;
+    EXPECT_GT(monotone, wavy.n_faces() * 9 / 10);
+  }
+}
+
 TEST(FieldAccuracy, MustBeALength) {
   const TriangleMesh mesh = planar_grid(2, 2, 1, 1);
   EXPECT_EQ(ExactFieldOptions{}.accuracy, 0);
