@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "isopath/contour/contour_graph.h"
+#include "isopath/field/value_range.h"
 #include "isopath/impact/cover_field.h"
 
 namespace isopath {
@@ -49,6 +51,24 @@ class DetourBuilder {
   const CoverField& cover_;
 };
 
+/// The contours that loops go along: one level after the other, a spacing apart, from where gaps begin to be too wide;
+/// and half a spacing above the last one where the open place goes on beyond.
+std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& field, double spacing,
+                                 Progress& progress) {
+  const double first = 0.5 * widest_gap * spacing;
+  const ValueRange range = value_range(mesh, field, 0.01 * spacing);
+  std::vector<double> levels;
+  for (int k = 0; first + 0.5 * k * spacing < range.high; ++k) levels.push_back(first + 0.5 * k * spacing);
+  std::vector<Contour> kept;
+  if (levels.empty()) return kept;
+  ContourSet set = contour_set(mesh, field, levels, {.chord_tolerance = 1e-3 * spacing}, progress);
+  for (std::size_t k = 0; k < set.contours.size(); ++k) {
+    const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
+    if (place % 2 == 0 || set.graph.children[k].empty()) kept.push_back(std::move(set.contours[k]));
+  }
+  return kept;
+}
+
 }  // namespace
 
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, double spacing, ImpactCurve& curve,
@@ -57,11 +77,8 @@ int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, d
   const CoverField cover = distance_from_cover(mesh, curve, progress);
   const DetourBuilder builder(mesh, normals, curve, cover);
   std::vector<Detour> detours;
-  for (double level = 0.5 * widest_gap * spacing;; level += spacing) {
-    const auto contours =
-        isolines(mesh, cover.field, std::span(&level, 1), {.chord_tolerance = 1e-3 * spacing}, progress);
-    if (contours.empty()) break;
-    for (const Contour& contour : contours) detours.push_back(builder.around(contour));
+  for (const Contour& contour : open_places(mesh, cover.field, spacing, progress)) {
+    detours.push_back(builder.around(contour));
   }
   if (detours.empty()) return 0;
   std::stable_sort(detours.begin(), detours.end(), [](const Detour& a, const Detour& b) { return a.after < b.after; });
