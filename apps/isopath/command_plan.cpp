@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "isopath/core/error.h"
 #include "isopath/plan/job.h"
+#include "isopath/plan/output_folder.h"
 #include "isopath/plan/plan_outputs.h"
 #include "isopath/plan/run_plan.h"
 #include "isopath/post/export.h"
@@ -106,6 +107,7 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
 
 void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
   const Job job = job_of(arguments);
+  check_output_folder(arguments.output);  // before the work, not after it
   PlanResult result;
   {
     ConsoleProgress progress(flags.quiet);

@@ -50,7 +50,7 @@ class ConsoleProgress final : public Progress {
   bool line_open_ = false;
 };
 
-/// From here on SIGINT and SIGTERM make every ConsoleProgress report that it is cancelled.
+/// From here on SIGINT, SIGTERM and SIGHUP make every ConsoleProgress report that it is cancelled.
 void listen_for_interrupts();
 
 /// One line a warning on stderr, unless quiet.

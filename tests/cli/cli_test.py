@@ -6,6 +6,7 @@ Usage: cli_test.py PROGRAM COMMAND,COMMAND,... [unittest arguments]
 import json
 import math
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -339,6 +340,45 @@ class Plan(Program):
 
 
 class Interrupt(Program):
+    def test_plan_stops_within_a_second_in_every_stage_and_leaves_nothing(self):
+        _, text = grid_off(60, 60, 1)
+        large = self.path("large.off")
+        self.write(large, text)
+        arguments = [PROGRAM, "plan", large, "--spacing", "0.4"]
+        started = time.monotonic()
+        self.assertEqual(subprocess.run([*arguments, "-o", self.path("whole")], capture_output=True).returncode, OK)
+        duration = time.monotonic() - started
+        for k in range(10):
+            parent = self.path(f"run{k}")
+            os.makedirs(os.path.join(parent, "old"))
+            out = os.path.join(parent, "old" if k % 2 else "new")
+            process = subprocess.Popen([*arguments, "-o", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                       text=True)
+            process.stderr.readline()
+            time.sleep(duration * k / 10)
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            message = process.stderr.read()
+            process.stderr.close()
+            status = process.wait(60)
+            if status == OK:
+                continue  # it was faster this time
+            self.assertEqual(status, INTERRUPTED, message)
+            self.assertLess(time.monotonic() - start, 1, message)
+            self.assertEqual([os.listdir(parent), os.listdir(os.path.join(parent, "old"))], [["old"], []], message)
+
+    def test_a_file_too_large_for_its_limit_leaves_nothing(self):
+        parent = self.path("parent")
+        os.mkdir(parent)
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        result = subprocess.run([PROGRAM, "plan", self.plane, "--spacing", "1", "-o", os.path.join(parent, "out")],
+                                capture_output=True, text=True, preexec_fn=limit)
+        self.assert_refused(result, INPUT, "out", "too large")
+        self.assertEqual(os.listdir(parent), [])
+
     def test_ctrl_c_stops_within_a_second_and_leaves_nothing(self):
         _, text = grid_off(400, 400, 1)
         large = self.path("large.off")

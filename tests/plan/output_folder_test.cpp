@@ -74,5 +74,39 @@ TEST_F(OutputFolder, NamesTheFolderWhenItIsAFile) {
   EXPECT_THROW(write_output_folder(root_ / "file/below", files_), Error);
 }
 
+/// Stops at its nth checkpoint.
+class StopsLater final : public Progress {
+ public:
+  explicit StopsLater(int n) : left_(n) {}
+  bool cancelled() const override { return --left_ < 0; }
+
+ private:
+  mutable int left_;
+};
+
+TEST_F(OutputFolder, LeavesNothingWhenItIsCancelledAtAnyPlace) {
+  write_output_folder(root_ / "old", files_);
+  const std::vector<OutputFile> fresh = {{files_[0].name, "fresh"}, {"another", "fresh"}};
+  for (int n = 0; n < 3; ++n) {
+    StopsLater into_new(n);
+    EXPECT_THROW(write_output_folder(root_ / "new", fresh, into_new), Error);
+    StopsLater into_old(n);
+    EXPECT_THROW(write_output_folder(root_ / "old", fresh, into_old), Error);
+    EXPECT_EQ(std::distance(fs::directory_iterator(root_), {}), 1);
+    EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "old"), {}), static_cast<std::ptrdiff_t>(files_.size()));
+    EXPECT_EQ(read_whole_file(root_ / "old" / files_[0].name), files_[0].content);
+  }
+}
+
+TEST_F(OutputFolder, IsCheckedBeforehandWithoutChangingAnything) {
+  check_output_folder(root_ / "x/y/");
+  check_output_folder(root_);
+  check_output_folder("name");
+  EXPECT_FALSE(fs::exists(root_ / "x"));
+  write_output_folder(root_ / "old", files_);
+  EXPECT_THROW(check_output_folder(root_ / "old" / files_[0].name), Error);
+  EXPECT_THROW(check_output_folder(root_ / "old" / files_[0].name / "below/that"), Error);
+}
+
 }  // namespace
 }  // namespace isopath

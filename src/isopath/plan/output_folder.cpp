@@ -1,6 +1,7 @@
 #include "isopath/plan/output_folder.h"
 
 #include <stdlib.h>  // mkdtemp
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -42,10 +43,19 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-void write_files(const fs::path& folder, std::span<const OutputFile> files) {
+void write_files(const fs::path& folder, std::span<const OutputFile> files, Progress& progress) {
   fs::create_directory(folder);
-  for (const OutputFile& file : files) write_file_atomically(folder / file.name, file.content);
+  for (const OutputFile& file : files) {
+    progress.checkpoint();
+    write_file_atomically(folder / file.name, file.content);
+  }
+  progress.checkpoint();
 }
+
+/// Without the slash that a person may have put at its end.
+fs::path without_slash(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
+
+fs::path parent_of(const fs::path& folder) { return folder.has_parent_path() ? folder.parent_path() : fs::path("."); }
 
 /// Renames that can be taken back, last first.
 class Moves {
@@ -87,12 +97,12 @@ void move_into_place(const fs::path& fresh, const fs::path& replaced, const fs::
 
 }  // namespace
 
-void write_output_folder(const fs::path& folder, std::span<const OutputFile> files) {
-  const fs::path wanted = folder.has_filename() ? folder : folder.parent_path();
-  const fs::path parent = wanted.has_parent_path() ? wanted.parent_path() : fs::path(".");
+void write_output_folder(const fs::path& folder, std::span<const OutputFile> files, Progress& progress) {
+  check_output_folder(folder);
+  const fs::path wanted = without_slash(folder);
+  const fs::path parent = parent_of(wanted);
   std::error_code error;
   const bool exists = fs::exists(wanted, error);
-  if (exists && !fs::is_directory(wanted, error)) fail(wanted, "cannot write into the folder", "it is a file");
   if (!exists) fs::create_directories(parent, error);
   if (error) fail(wanted, "cannot make the folder", error.message());
 
@@ -100,13 +110,28 @@ void write_output_folder(const fs::path& folder, std::span<const OutputFile> fil
   const TemporaryFolder temporary(exists ? wanted : parent, wanted);
   const fs::path fresh = temporary.path() / "new";
   try {
-    write_files(fresh, files);
+    write_files(fresh, files, progress);
   } catch (const Error& inner) {
+    if (inner.code() == ErrorCode::cancelled) throw;
     fail(wanted, inner.summary(), inner.where().file);
   }
   if (exists) return move_into_place(fresh, temporary.path() / "old", wanted, files);
   fs::rename(fresh, wanted, error);
   if (error) fail(wanted, "cannot make the folder", error.message());
+}
+
+void check_output_folder(const fs::path& folder) {
+  const fs::path wanted = without_slash(folder);
+  fs::path nearest = wanted;
+  std::error_code error;
+  while (!fs::exists(nearest, error) && nearest != parent_of(nearest)) nearest = parent_of(nearest);
+  if (!fs::is_directory(nearest, error)) {
+    if (nearest == wanted) fail(wanted, "cannot write into the folder", "it is a file");
+    fail(wanted, "cannot make the folder", nearest.string() + " is not a folder");
+  }
+  if (::access(nearest.c_str(), W_OK | X_OK) != 0) {
+    fail(wanted, nearest == wanted ? "cannot write into the folder" : "cannot make the folder", std::strerror(errno));
+  }
 }
 
 }  // namespace isopath

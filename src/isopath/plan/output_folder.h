@@ -4,6 +4,8 @@
 #include <span>
 #include <string>
 
+#include "isopath/core/progress.h"
+
 namespace isopath {
 
 /// A file of a result folder, as text or bytes.
@@ -14,7 +16,13 @@ struct OutputFile {
 
 /// Writes all the files into a folder, or none: they are written to a temporary folder on the same disk first and then
 /// moved into place. Missing folders are made; files of the folder that are not among `files` stay. When a file cannot
-/// be moved into place, those already moved are taken back. Throws Error(bad_input) naming the path.
-void write_output_folder(const std::filesystem::path& folder, std::span<const OutputFile> files);
+/// be moved into place, those already moved are taken back. Throws Error(bad_input) naming the path, and
+/// Error(cancelled) on request as long as nothing was moved.
+void write_output_folder(const std::filesystem::path& folder, std::span<const OutputFile> files,
+                         Progress& progress = Progress::none());
+
+/// Throws Error(bad_input) when `write_output_folder` would fail for a reason that can be seen beforehand: the folder
+/// is a file, lies below one, or may not be written. Changes nothing.
+void check_output_folder(const std::filesystem::path& folder);
 
 }  // namespace isopath

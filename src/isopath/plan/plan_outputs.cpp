@@ -59,7 +59,7 @@ void write_outputs(const PlanResult& result, const std::filesystem::path& folder
   progress.stage("write");
   const std::vector<OutputFile> files = plan_outputs(result, folder);
   progress.checkpoint();
-  write_output_folder(folder, files);
+  write_output_folder(folder, files, progress);
 }
 
 }  // namespace isopath

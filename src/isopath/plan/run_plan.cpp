@@ -176,7 +176,6 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   field.function.reset();  // its windows are the largest thing in memory, and the gap needs windows of its own
   clock.ends("impact");
 
-  progress.stage("gap");
   result.gap = measure_gap(mesh, result.impact.curve, result.spacing, progress);
   result.figures = path_figures(result.impact.curve, result.spacing);
   clock.ends("gap");
