@@ -60,6 +60,18 @@ void index_sources(ExactFieldData& data) {
     data.face_sources.push_back(source);
   }
   for (Index f = 0; f < data.mesh.n_faces(); ++f) data.first_source[f + 1] += data.first_source[f];
+  constexpr std::size_t block = 16;
+  data.first_block.assign(1, 0);
+  for (Index f = 0; f < data.mesh.n_faces(); ++f) {
+    for (std::size_t i = data.first_source[f]; i < data.first_source[f + 1]; i += block) {
+      ExactFieldData::SourceBlock& part = data.source_blocks.emplace_back();
+      part.first = i;
+      part.past = std::min(i + block, data.first_source[f + 1]);
+      for (std::size_t k = part.first; k < part.past; ++k)
+        part.box.extend(data.face_sources[k].a).extend(data.face_sources[k].b);
+    }
+    data.first_block.push_back(data.source_blocks.size());
+  }
 }
 
 Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {

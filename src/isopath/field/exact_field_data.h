@@ -20,6 +20,19 @@ class ExactFieldData {
   void for_each_window(Index edge, Visit&& visit) const {
     for (Index id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
   }
+  /// The same for the windows that reach into [low, high] of the edge.
+  template <class Visit>
+  void for_each_window(Index edge, double low, double high, Visit&& visit) const {
+    Index id = first_window[edge];
+    Index past = first_window[edge + 1];
+    while (past - id > 8) {  // windows are sorted: the first that ends behind `low`
+      const Index middle = id + (past - id) / 2;
+      (windows[middle].end < low ? id : past) = middle;
+    }
+    for (; id < first_window[edge + 1] && windows[id].begin <= high; ++id) {
+      if (windows[id].end >= low) visit(windows[id]);
+    }
+  }
   /// A source element in the frame of half-edge 3·face of a face that it touches.
   struct PlacedSource {
     Index id = no_index;
@@ -27,6 +40,16 @@ class ExactFieldData {
     Vec2 b = Vec2::Zero();
     double squared_length = 0;  ///< zero for a point
   };
+  /// A run of sources of one face with the box around them. Elements of a polyline follow each other, so the boxes are
+  /// small.
+  struct SourceBlock {
+    Eigen::AlignedBox2d box;
+    std::size_t first = 0;
+    std::size_t past = 0;
+  };
+  std::span<const SourceBlock> source_blocks_in(Index face) const {
+    return {source_blocks.data() + first_block[face], source_blocks.data() + first_block[face + 1]};
+  }
   std::span<const PlacedSource> sources_in(Index face) const {
     return {face_sources.data() + first_source[face], face_sources.data() + first_source[face + 1]};
   }
@@ -41,6 +64,8 @@ class ExactFieldData {
   std::vector<FanArc> fans;                ///< per half-edge: what its tail, as a pseudo-source, sends into its face
   std::vector<PlacedSource> face_sources;  ///< face by face, by id
   std::vector<std::size_t> first_source;
+  std::vector<SourceBlock> source_blocks;  ///< face by face
+  std::vector<std::size_t> first_block;
   std::size_t propagated = 0;
 };
 

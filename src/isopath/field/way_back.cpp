@@ -42,19 +42,38 @@ bool improve(const Window& w, const Vec2& p, double slack, Crossing& best) {
   return true;
 }
 
+void consider_source(const ExactFieldData::PlacedSource& source, const Vec2& p, WayBack& best) {
+  const Vec2 way = source.b - source.a;
+  double t = 0;
+  if (source.squared_length > 0) t = std::clamp((p - source.a).dot(way) / source.squared_length, 0.0, 1.0);
+  const Vec2 towards = source.a + t * way - p;
+  const double squared = towards.squaredNorm();
+  // the ends of a segment belong to the points there
+  const bool at_end = source.squared_length > 0 && (t == 0 || t == 1);
+  const double bound = best.distance * best.distance;
+  if (at_end ? squared >= bound : squared > bound) return;
+  const double distance = std::sqrt(squared);
+  if (distance < best.distance) best = {distance, source.id, WayBack::Stop::source, source.id, t, towards};
+}
+
 void consider_sources(const ExactFieldData& data, Index face, const Vec2& p, WayBack& best) {
-  for (const ExactFieldData::PlacedSource& source : data.sources_in(face)) {
-    const Vec2 way = source.b - source.a;
-    double t = 0;
-    if (source.squared_length > 0) t = std::clamp((p - source.a).dot(way) / source.squared_length, 0.0, 1.0);
-    const Vec2 towards = source.a + t * way - p;
-    const double squared = towards.squaredNorm();
-    // the ends of a segment belong to the points there
-    const bool at_end = source.squared_length > 0 && (t == 0 || t == 1);
-    const double bound = best.distance * best.distance;
-    if (at_end ? squared >= bound : squared > bound) continue;
-    const double distance = std::sqrt(squared);
-    if (distance < best.distance) best = {distance, source.id, WayBack::Stop::source, source.id, t, towards};
+  // the nearest block first: what it gives rules most others out
+  const auto blocks = data.source_blocks_in(face);
+  std::size_t nearest = 0;
+  double least = infinity;
+  for (std::size_t k = 0; k < blocks.size() && blocks.size() > 1; ++k) {
+    const double squared = blocks[k].box.squaredExteriorDistance(p);
+    if (squared >= least) continue;
+    least = squared;
+    nearest = k;
+  }
+  const auto consider_block = [&](const ExactFieldData::SourceBlock& block) {
+    for (std::size_t i = block.first; i < block.past; ++i) consider_source(data.face_sources[i], p, best);
+  };
+  if (!blocks.empty()) consider_block(blocks[nearest]);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    if (k != nearest && blocks[k].box.squaredExteriorDistance(p) <= best.distance * best.distance)
+      consider_block(blocks[k]);
   }
 }
 
@@ -80,7 +99,11 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
   crossing.distance = best.distance;
   Index root = no_index;
   bool found = false;
-  data.for_each_window(edge, [&](const Window& w) {
+  // a way through the edge is at least as long as its part in this face
+  const double squared_width = best.distance * best.distance - p.y() * p.y();
+  if (squared_width < 0) return;
+  const double width = std::sqrt(squared_width);
+  data.for_each_window(edge, p.x() - width, p.x() + width, [&](const Window& w) {
     if (w.halfedge != h || !improve(w, p, widest_miss * length, crossing)) return;
     found = true;
     root = w.root;
