@@ -1,5 +1,7 @@
 #include "isopath/field/value_range.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,87 +13,101 @@ namespace {
 struct Part {
   Index face;
   Vec3 corner[3];
-  int depth;
+  int depth = 0;
+
+  static Part whole(Index face) { return {face, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}}; }
+  Vec3 centre() const { return (corner[0] + corner[1] + corner[2]) / 3; }
 };
 
 constexpr int deepest = 24;
 
-class RangeSearch {
- public:
-  RangeSearch(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance)
-      : mesh_(mesh), function_(function), tolerance_(tolerance) {}
+/// Distance from the centre to the farthest corner.
+double radius_of(const TriangleMesh& mesh, const Part& part) {
+  const Vec3 place = position_of(mesh, {part.face, part.centre()});
+  double radius = 0;
+  for (const Vec3& c : part.corner) radius = std::max(radius, (position_of(mesh, {part.face, c}) - place).norm());
+  return radius;
+}
 
-  ValueRange run() {
-    for (Index v = 0; v < mesh_.n_vertices(); ++v) {
-      if (mesh_.outgoing(v) != no_index && std::isfinite(function_.value_at_vertex(v)))
-        include(function_.value_at_vertex(v));
-    }
-    if (function_.linear_in_faces()) return range_;
-    for (Index f = 0; f < mesh_.n_faces(); ++f) {
-      const auto& corners = mesh_.triangle(f);
-      const bool reached = std::all_of(corners.begin(), corners.end(),
-                                       [&](Index v) { return std::isfinite(function_.value_at_vertex(v)); });
-      if (reached) search({f, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 0});
-    }
-    return range_;
-  }
-
- private:
-  void include(double value) {
-    range_.low = std::min(range_.low, value);
-    range_.high = std::max(range_.high, value);
-  }
-
-  void search(const Part& whole) {
-    parts_.assign(1, whole);
-    while (!parts_.empty()) {
-      const Part part = parts_.back();
-      parts_.pop_back();
-      const Vec3 centre = (part.corner[0] + part.corner[1] + part.corner[2]) / 3;
-      const Vec3 place = position_of(mesh_, {part.face, centre});
-      double radius = 0;
-      for (const Vec3& c : part.corner) radius = std::max(radius, (position_of(mesh_, {part.face, c}) - place).norm());
-      const double value = function_.value({part.face, centre});
-      include(value);
-      const double reach = radius * function_.max_slope();
-      const bool may_rise = value + reach > range_.high + tolerance_;
-      const bool may_fall = value - reach < range_.low - tolerance_;
-      if ((may_rise || may_fall) && part.depth < deepest) divide(part);
+/// In two across the longest side: thin parts become round.
+void divide(const TriangleMesh& mesh, const Part& part, std::vector<Part>& parts) {
+  int longest = 0;
+  double most = -1;
+  for (int i = 0; i < 3; ++i) {
+    const double side =
+        (position_of(mesh, {part.face, part.corner[i]}) - position_of(mesh, {part.face, part.corner[(i + 1) % 3]}))
+            .norm();
+    if (side > most) {
+      most = side;
+      longest = i;
     }
   }
+  const Vec3 a = part.corner[longest];
+  const Vec3 b = part.corner[(longest + 1) % 3];
+  const Vec3 c = part.corner[(longest + 2) % 3];
+  const Vec3 middle = 0.5 * (a + b);
+  parts.push_back({part.face, {a, middle, c}, part.depth + 1});
+  parts.push_back({part.face, {middle, b, c}, part.depth + 1});
+}
 
-  /// In two across the longest side: thin parts become round.
-  void divide(const Part& part) {
-    int longest = 0;
-    double most = -1;
-    for (int i = 0; i < 3; ++i) {
-      const double side =
-          (position_of(mesh_, {part.face, part.corner[i]}) - position_of(mesh_, {part.face, part.corner[(i + 1) % 3]}))
-              .norm();
-      if (side > most) {
-        most = side;
-        longest = i;
-      }
-    }
-    const Vec3 a = part.corner[longest];
-    const Vec3 b = part.corner[(longest + 1) % 3];
-    const Vec3 c = part.corner[(longest + 2) % 3];
-    const Vec3 middle = 0.5 * (a + b);
-    parts_.push_back({part.face, {a, middle, c}, part.depth + 1});
-    parts_.push_back({part.face, {middle, b, c}, part.depth + 1});
+bool is_reached(const TriangleMesh& mesh, const SurfaceFunction& function, Index face) {
+  const auto& corners = mesh.triangle(face);
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](Index v) { return std::isfinite(function.value_at_vertex(v)); });
+}
+
+/// Widens the range by what the face holds inside; finer only where the slope allows values beyond it.
+void search(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double tolerance,
+            ValueRange& range) {
+  std::vector<Part> parts{Part::whole(face)};
+  while (!parts.empty()) {
+    const Part part = parts.back();
+    parts.pop_back();
+    const double value = function.value({face, part.centre()});
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+    const double reach = radius_of(mesh, part) * function.max_slope();
+    const bool beyond = value + reach > range.high + tolerance || value - reach < range.low - tolerance;
+    if (beyond && part.depth < deepest) divide(mesh, part, parts);
   }
+}
 
-  const TriangleMesh& mesh_;
-  const SurfaceFunction& function_;
-  double tolerance_;
-  ValueRange range_;
-  std::vector<Part> parts_;
-};
+bool may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double level) {
+  std::vector<Part> parts{Part::whole(face)};
+  while (!parts.empty()) {
+    const Part part = parts.back();
+    parts.pop_back();
+    const double value = function.value({face, part.centre()});
+    if (value >= level) return true;
+    if (value + radius_of(mesh, part) * function.max_slope() < level) continue;
+    if (part.depth >= deepest) return true;
+    divide(mesh, part, parts);
+  }
+  return false;
+}
 
 }  // namespace
 
 ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance) {
-  return RangeSearch(mesh, function, tolerance).run();
+  ValueRange range;
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const double value = function.value_at_vertex(v);
+    if (mesh.outgoing(v) == no_index || !std::isfinite(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  if (function.linear_in_faces()) return range;
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    if (is_reached(mesh, function, f)) search(mesh, function, f, tolerance, range);
+  }
+  return range;
+}
+
+std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level) {
+  std::vector<char> may(mesh.n_faces(), 0);
+  tbb::parallel_for(Index{0}, mesh.n_faces(),
+                    [&](Index f) { may[f] = is_reached(mesh, function, f) && may_reach(mesh, function, f, level); });
+  return may;
 }
 
 }  // namespace isopath

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "isopath/field/surface_function.h"
 
 namespace isopath {
@@ -15,5 +17,9 @@ struct ValueRange {
 /// function's slope allows more than was found (branch and bound). Faces with a corner that is not reached are left
 /// out.
 ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance);
+
+/// For each face whether the function may come up to `level` somewhere in it; where it says no, that is proven by the
+/// function's slope.
+std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level);
 
 }  // namespace isopath

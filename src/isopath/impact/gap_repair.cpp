@@ -51,17 +51,44 @@ class DetourBuilder {
   const CoverField& cover_;
 };
 
+/// The distance from the cover, with what is known of where it stays below a level: no isoline hides in those faces.
+class BoundedField final : public SurfaceFunction {
+ public:
+  BoundedField(const ExactField& field, std::vector<char> may_reach)
+      : field_(field), may_reach_(std::move(may_reach)) {}
+
+  double value_at_vertex(Index vertex) const override { return field_.value_at_vertex(vertex); }
+  double value(const SurfacePoint& point) const override { return field_.value(point); }
+  Slope slope(const SurfacePoint& point) const override { return field_.slope(point); }
+  void edge_crossings(Index edge, double level, std::vector<double>& parameters) const override {
+    field_.edge_crossings(edge, level, parameters);
+  }
+  bool linear_in_faces() const override { return false; }
+  bool monotone_in_face(Index face) const override { return !may_reach_[face] || field_.monotone_in_face(face); }
+  double max_slope() const override { return field_.max_slope(); }
+
+ private:
+  const ExactField& field_;
+  std::vector<char> may_reach_;
+};
+
 /// The contours that loops go along: one level after the other, a spacing apart, from where gaps begin to be too wide;
 /// and half a spacing above the last one where the open place goes on beyond.
 std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& field, double spacing,
                                  Progress& progress) {
-  const double first = 0.5 * widest_gap * spacing;
-  const ValueRange range = value_range(mesh, field, 0.01 * spacing);
   std::vector<double> levels;
-  for (int k = 0; first + 0.5 * k * spacing < range.high; ++k) levels.push_back(first + 0.5 * k * spacing);
+  std::vector<char> wide;  // the faces that the lowest level may lie in
+  for (double level = 0.5 * widest_gap * spacing;; level += 0.5 * spacing) {
+    std::vector<char> may_reach = faces_that_may_reach(mesh, field, level);
+    progress.checkpoint();
+    if (std::find(may_reach.begin(), may_reach.end(), 1) == may_reach.end()) break;
+    if (levels.empty()) wide = std::move(may_reach);
+    levels.push_back(level);
+  }
   std::vector<Contour> kept;
   if (levels.empty()) return kept;
-  ContourSet set = contour_set(mesh, field, levels, {.chord_tolerance = 1e-3 * spacing}, progress);
+  ContourSet set =
+      contour_set(mesh, BoundedField(field, std::move(wide)), levels, {.chord_tolerance = 1e-3 * spacing}, progress);
   for (std::size_t k = 0; k < set.contours.size(); ++k) {
     const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
     if (place % 2 == 0 || set.graph.children[k].empty()) kept.push_back(std::move(set.contours[k]));
