@@ -109,7 +109,7 @@ class SpiralBuilder {
   /// One turn from the contour the curve has come to, to the next one.
   bool turn(const Contour& from, const Contour& to, int splits) {
     const double gap = std::abs(to.level - from.level);
-    const double shortest = 0.25 * gap;
+    const double shortest = 0.15 * gap;
     const double longest = 0.5 * gap;
     const Ring p = make_ring(linker_.mesh(), from, end(), shortest, longest);
     const Ring q = make_ring(linker_.mesh(), to, end(), shortest, longest);
