@@ -80,9 +80,14 @@ std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const 
 void SurfaceLinker::extend(SurfaceCurve& curve, const SurfacePoint& to) const {
   if (curve.empty()) return curve.add(mesh_, to);
   const double straight = (position_of(mesh_, to) - curve.positions.back()).norm();
-  const auto way = link(curve.points.back(), to, 4 * straight + mesh_.tolerance().length);
-  if (!way) return curve.add(mesh_, to);
-  for (std::size_t i = 1; i < way->size(); ++i) curve.add(mesh_, way->points[i]);
+  // the way over a sharp edge can be many times as long as the straight one
+  for (double longest = 4 * straight + mesh_.tolerance().length; longest < 16 * mesh_.size(); longest *= 4) {
+    const auto way = link(curve.points.back(), to, longest);
+    if (!way) continue;
+    for (std::size_t i = 1; i < way->size(); ++i) curve.add(mesh_, way->points[i]);
+    return;
+  }
+  curve.add(mesh_, to);
 }
 
 }  // namespace isopath

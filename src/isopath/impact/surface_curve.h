@@ -38,8 +38,8 @@ class SurfaceLinker {
   /// the geodesic. None when every way is longer than `longest`.
   std::optional<SurfaceCurve> link(const SurfacePoint& from, const SurfacePoint& to, double longest) const;
 
-  /// Appends a point to a curve, by way of the surface. Where the surface offers no short way the point is appended as
-  /// it is.
+  /// Appends a point to a curve, by way of the surface. Only where the surface offers no way, as between two
+  /// components, the point is appended as it is.
   void extend(SurfaceCurve& curve, const SurfacePoint& to) const;
 
   const TriangleMesh& mesh() const { return mesh_; }
