@@ -51,7 +51,7 @@ TEST(boundary_way, is_the_shorter_way_round_a_square) {
   for (const double s : {0.0, 0.3, 1.0, 3.5, 4.0, 9.25, 15.0, 15.9}) {
     for (const double t : {0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 4.0, 8.25, 12.5, 15.0, 15.5, 15.95}) {
       if (std::abs(std::abs(t - s) - 8) < 1e-9) continue;  // both ways are equally long
-      for (const double longest : {1.0, 5.0, 20.0}) expect_shorter_way(mesh, loop, s, t, longest);
+      for (const double longest : {1.0, 5.0, 20.0, infinity}) expect_shorter_way(mesh, loop, s, t, longest);
     }
   }
 }
@@ -93,6 +93,7 @@ TEST(boundary_way, needs_two_points_of_one_loop) {
   const SurfacePoint low = point_at(pipe, pipe.boundary_loops()[0], 1);
   const SurfacePoint high = point_at(pipe, pipe.boundary_loops()[1], 1);
   EXPECT_FALSE(boundary_way(pipe, low, high, 1000));
+  EXPECT_FALSE(boundary_way(pipe, low, high, infinity));
 }
 
 }  // namespace

@@ -15,11 +15,12 @@ Index boundary_halfedge(const TriangleMesh& mesh, const SurfacePoint& point) {
 
 /// Along the loop, with the surface on the left.
 std::optional<SurfaceCurve> walk_forward(const TriangleMesh& mesh, const SurfacePoint& from, const SurfacePoint& to,
-                                         Index h, Index last, double longest) {
+                                         Index first, Index last, double longest) {
   SurfaceCurve curve;
   curve.add(mesh, from);
   const Vec3 goal = position_of(mesh, to);
   double length = 0;
+  Index h = first;
   const auto ahead = [&] {
     return (mesh.position(mesh.to(h)) - goal).norm() <= (mesh.position(mesh.to(h)) - curve.positions.back()).norm();
   };
@@ -28,6 +29,7 @@ std::optional<SurfaceCurve> walk_forward(const TriangleMesh& mesh, const Surface
     length += (mesh.position(vertex) - curve.positions.back()).norm();
     if (length > longest) return std::nullopt;
     h = mesh.outgoing(vertex);
+    if (h == first && h != last) return std::nullopt;  // another loop
     curve.add(mesh, point_on_halfedge(h, 0));
   }
   length += (goal - curve.positions.back()).norm();
