@@ -16,7 +16,7 @@ std::string_view name_of(MoveKind kind);
 /// A point of the impact curve (paper ch. 3.1). Its kind is that of the move that arrives at it.
 struct ImpactPoint {
   MoveKind kind = MoveKind::cover;
-  SurfacePoint at;               ///< where on the surface; invalid on a lift
+  SurfacePoint at;               ///< where on the surface; invalid in the air, and a lift ends on the surface
   Vec3 position = Vec3::Zero();  ///< mm
   Vec3 normal = Vec3::UnitZ();   ///< unit, outward from the side the triangles' orientation shows
   Index piece = 0;               ///< counts up with every lift: one piece is covered without leaving the surface
