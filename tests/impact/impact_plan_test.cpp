@@ -89,6 +89,16 @@ TEST(impact_plan, covers_what_has_two_boundary_loops_or_none) {
   expect_covered(ball, plan_from_vertex(ball, 3, 5), 3);
 }
 
+TEST(impact_plan, covers_what_has_sharp_edges) {
+  const TriangleMesh cube = test::cube(5, 20);
+  expect_covered(cube, plan_from_vertex(cube, 2, 3), 2);
+  const TriangleMesh knife =
+      test::height_grid(20, 10, 20, 10, [](double x, double) { return -10 * std::abs(x - 10.3); });
+  expect_covered(knife, plan_from_boundary(knife, 0.9), 0.9);
+  const TriangleMesh blade = test::lofted_blade(3, 60);
+  expect_covered(blade, plan_from_boundary(blade, 3), 3);
+}
+
 /// Rectangle of 30 x 20 with the distance from its lower edge.
 struct PlateFromEdge {
   TriangleMesh mesh = test::planar_grid(15, 10, 30, 20, {.jitter = 0.2});
