@@ -29,7 +29,7 @@ std::optional<SurfaceCurve> walk_forward(const TriangleMesh& mesh, const Surface
     length += (mesh.position(vertex) - curve.positions.back()).norm();
     if (length > longest) return std::nullopt;
     h = mesh.outgoing(vertex);
-    if (h == first && h != last) return std::nullopt;  // another loop
+    if (h == first) return std::nullopt;  // `to` is on another loop, or nearer the other way on the same edge
     curve.add(mesh, point_on_halfedge(h, 0));
   }
   length += (goal - curve.positions.back()).norm();
