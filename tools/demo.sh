@@ -1,5 +1,5 @@
 # Plans two real parts and says where the results are. Sourced by ../dev.
-build
+build isopath_app
 
 # plan_part NAME WHAT ARGUMENTS...: one run of the program, and one line of its figures.
 plan_part() {

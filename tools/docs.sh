@@ -1,5 +1,5 @@
 # Runs the program again for the pictures in docs/img. Sourced by ../dev.
-build
+build isopath_app
 
 out=build/docs
 picture() { # NAME RUN screenshot options...
