@@ -47,7 +47,7 @@ void SurfaceGraph::join_across_pairs() {
     const Index h = mesh_.halfedge_of(e);
     const Index twin = mesh_.twin(h);
     if (twin == no_index) continue;
-    const Vec2 up = geometry.apex(h);
+    const Vec2& up = geometry.apex(h);
     const Vec2 down = Vec2(geometry.length(h), 0) - geometry.apex(twin);
     if (up.y() - down.y() <= 0) continue;
     const double x = up.x() + (down.x() - up.x()) * up.y() / (up.y() - down.y());
