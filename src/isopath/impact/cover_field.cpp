@@ -5,7 +5,7 @@
 
 namespace isopath {
 
-CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, Progress& progress) {
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress) {
   SourceSet source;
   std::vector<Index> curve_point;
   std::vector<SurfacePoint> stretch;
@@ -28,7 +28,7 @@ CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curv
   }
   flush();
   if (source.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing");
-  return {ExactField::compute(mesh, source, {}, progress), std::move(curve_point)};
+  return {ExactField::compute(mesh, source, {.accuracy = cover_accuracy * spacing}, progress), std::move(curve_point)};
 }
 
 }  // namespace isopath

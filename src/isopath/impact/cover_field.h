@@ -14,7 +14,10 @@ struct CoverField {
   std::vector<Index> curve_point;
 };
 
+/// Bound on the error of these distances, in spacings: no gap is off by more than twice this.
+inline constexpr double cover_accuracy = 1e-4;
+
 /// Throws Error(no_plan) when the curve covers nothing, Error(cancelled) on request.
-CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, Progress& progress);
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress);
 
 }  // namespace isopath

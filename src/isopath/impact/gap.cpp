@@ -65,7 +65,7 @@ GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double
   }
   progress.stage("gap");
   GapReport report;
-  const CoverField cover = distance_from_cover(mesh, curve, progress);
+  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress);
   const ExactField& field = cover.field;
   for (const double d : field.vertex_distances()) report.vertex_gap.push_back(2 * d);
 
