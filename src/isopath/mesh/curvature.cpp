@@ -112,7 +112,7 @@ Quadratic fit(const std::vector<Vec3>& points, const Vec2& spread) {
 
 PrincipalCurvatures curvatures_at(const TriangleMesh& mesh, const SmoothNormals& normals, Index vertex) {
   const std::vector<Index> fan = widest_fan(mesh, normals, vertex);
-  const Vec3 n = normals.at_corner(TriangleMesh::face_of(fan.front()), fan.front() % 3);
+  const Vec3& n = normals.at_corner(TriangleMesh::face_of(fan.front()), fan.front() % 3);
   const Vec3 ex = n.unitOrthogonal();
   const Vec3 ey = n.cross(ex);
   std::vector<Vec3> points;

@@ -96,7 +96,8 @@ void face_outward(const TriangleSoup& soup, const Pairing& pairing, Orientation&
 
 /// Gives every fan of glued triangles around a vertex a vertex of its own.
 void split_vertices(RepairState& state, const Pairing& pairing, double separation) {
-  auto& [positions, triangles] = state.soup;
+  std::vector<Vec3>& positions = state.soup.positions;
+  std::vector<Triangle>& triangles = state.soup.triangles;
   const auto n_corners = static_cast<Index>(3 * triangles.size());
   const auto vertex = [&](Index corner) { return triangles[corner / 3][corner % 3]; };
   DisjointSets fans(n_corners);
