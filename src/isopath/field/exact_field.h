@@ -66,6 +66,7 @@ class ExactField final : public SurfaceFunction {
   bool linear_in_faces() const override { return false; }
   bool monotone_in_face(Index face) const override;
   double max_slope() const override { return 1; }
+  double lower_bound() const override { return 0; }
 
  private:
   explicit ExactField(std::unique_ptr<ExactFieldData> data);

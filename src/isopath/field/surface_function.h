@@ -42,6 +42,9 @@ class SurfaceFunction {
   virtual bool monotone_in_face(Index face) const = 0;
 
   virtual double max_slope() const = 0;
+
+  /// No value lies below this: 0 for distances.
+  virtual double lower_bound() const { return -infinity; }
 };
 
 }  // namespace isopath

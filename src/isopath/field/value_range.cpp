@@ -67,7 +67,8 @@ void search(const TriangleMesh& mesh, const SurfaceFunction& function, Index fac
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
     const double reach = radius_of(mesh, part) * function.max_slope();
-    const bool beyond = value + reach > range.high + tolerance || value - reach < range.low - tolerance;
+    const bool beyond = value + reach > range.high + tolerance ||
+                        std::max(value - reach, function.lower_bound()) < range.low - tolerance;
     if (beyond && part.depth < deepest) divide(mesh, part, parts);
   }
 }
@@ -88,7 +89,8 @@ bool may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, Index 
 
 }  // namespace
 
-ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance) {
+ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance,
+                       const Progress& progress) {
   ValueRange range;
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
     const double value = function.value_at_vertex(v);
@@ -98,6 +100,7 @@ ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function
   }
   if (function.linear_in_faces()) return range;
   for (Index f = 0; f < mesh.n_faces(); ++f) {
+    progress.checkpoint();
     if (is_reached(mesh, function, f)) search(mesh, function, f, tolerance, range);
   }
   return range;

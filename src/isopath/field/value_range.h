@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "isopath/core/progress.h"
 #include "isopath/field/surface_function.h"
 
 namespace isopath {
@@ -15,8 +16,9 @@ struct ValueRange {
 
 /// Both ends are values the function takes, within `tolerance` of the true extremes: faces are divided as long as the
 /// function's slope allows more than was found (branch and bound). Faces with a corner that is not reached are left
-/// out.
-ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance);
+/// out. Throws Error(cancelled) on request.
+ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function, double tolerance,
+                       const Progress& progress = Progress::none());
 
 /// For each face whether the function may come up to `level` somewhere in it; where it says no, that is proven by the
 /// function's slope.

@@ -43,12 +43,14 @@ void sample_face(const ExactField& field, Index face, double step, std::vector<S
 
 std::vector<Sample> sample_surface(const ExactField& field, double step, const Progress& progress) {
   const Index n = field.mesh().n_faces();
-  constexpr Index chunk = 512;
+  constexpr Index chunk = 64;
   std::vector<std::vector<Sample>> parts((n + chunk - 1) / chunk);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
-    if (progress.cancelled()) return;
     const auto first = static_cast<Index>(k) * chunk;
-    for (Index f = first; f < std::min(n, first + chunk); ++f) sample_face(field, f, step, parts[k]);
+    for (Index f = first; f < std::min(n, first + chunk); ++f) {
+      if (progress.cancelled()) return;  // a large face that the path crosses many times takes a while
+      sample_face(field, f, step, parts[k]);
+    }
   });
   progress.checkpoint();
   std::vector<Sample> samples;

@@ -54,7 +54,7 @@ Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
 
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
   Passes passes;
-  const ValueRange range = value_range(mesh, function, 0.01 * spacing);
+  const ValueRange range = value_range(mesh, function, 0.01 * spacing, progress);
   if (!(range.high > range.low)) return passes;
   const double count = std::max(1.0, std::ceil((range.high - range.low) / spacing - 1e-9));
   passes.spacing = (range.high - range.low) / count;
