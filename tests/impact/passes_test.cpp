@@ -133,6 +133,28 @@ TEST(passes, from_one_edge_of_a_plate_are_one_open_run) {
   }
 }
 
+TEST(passes, meet_a_component_too_narrow_for_any_level) {
+  // a large plate, and one that is narrower than half a spacing
+  TriangleSoup soup = test::planar_grid(8, 8, 20, 20).soup();
+  const TriangleSoup narrow = test::planar_grid(4, 1, 4, 0.5).soup();
+  const auto offset = static_cast<Index>(soup.positions.size());
+  for (const Vec3& p : narrow.positions) soup.positions.push_back(p + Vec3(50, 0, 0));
+  for (const Triangle& t : narrow.triangles) soup.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  const TriangleMesh mesh(soup);
+  const Passes passes = choose_passes(mesh, ExactField::compute(mesh, boundary_source(mesh)), 3, Progress::none());
+  expect_each_in_one_run(passes);
+  int on_narrow = 0;
+  for (const Contour& contour : passes.contours) {
+    for (const SurfacePoint& p : contour.points) {
+      if (position_of(mesh, p).x() < 40) continue;
+      ++on_narrow;
+      EXPECT_GE(position_of(mesh, p).y(), 0.05);
+      EXPECT_LE(position_of(mesh, p).y(), 0.45);
+    }
+  }
+  EXPECT_GT(on_narrow, 2);
+}
+
 TEST(passes, of_a_function_without_range_are_none) {
   const TriangleMesh mesh = test::planar_grid(3, 3, 3, 3);
   for (const double value : {infinity, 4.0}) {

@@ -50,6 +50,35 @@ Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
   return links;
 }
 
+/// A component so small or narrow that no level meets it gets one pass half way between its extremes.
+void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& function, const IsolineOptions& options,
+                           Passes& passes) {
+  std::vector<ValueRange> range(mesh.n_components());
+  std::vector<char> met(mesh.n_components(), 0);
+  for (const Contour& contour : passes.contours) met[mesh.component_of(contour.points.front().face)] = 1;
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    if (met[mesh.component_of(f)]) continue;
+    ValueRange& here = range[mesh.component_of(f)];
+    const double centre = function.value({f, Vec3::Constant(1.0 / 3)});
+    for (const double value :
+         {centre, function.value_at_vertex(mesh.triangle(f)[0]), function.value_at_vertex(mesh.triangle(f)[1]),
+          function.value_at_vertex(mesh.triangle(f)[2])}) {
+      if (!std::isfinite(value)) continue;
+      here.low = std::min(here.low, value);
+      here.high = std::max(here.high, value);
+    }
+  }
+  for (Index c = 0; c < mesh.n_components(); ++c) {
+    if (met[c] || !(range[c].high > range[c].low)) continue;
+    const double level = 0.5 * (range[c].low + range[c].high);
+    for (Contour& contour : isolines(mesh, function, std::span(&level, 1), options)) {
+      if (mesh.component_of(contour.points.front().face) != c) continue;
+      passes.runs.push_back({{static_cast<Index>(passes.contours.size())}, contour.closed});
+      passes.contours.push_back(std::move(contour));
+    }
+  }
+}
+
 }  // namespace
 
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
@@ -61,7 +90,8 @@ Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, 
   std::vector<double> levels;
   for (int k = 1; k < 2 * static_cast<int>(count); ++k) levels.push_back(range.low + 0.5 * k * passes.spacing);
 
-  ContourSet set = contour_set(mesh, function, levels, {.chord_tolerance = 1e-3 * spacing}, progress);
+  const IsolineOptions options{.chord_tolerance = 1e-3 * spacing};
+  ContourSet set = contour_set(mesh, function, levels, options, progress);
   const std::vector<char> keep = mark_passes(set, levels);
   const Links links = link_kept(set, keep);
 
@@ -88,6 +118,7 @@ Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, 
       here = links.children[here][0];
     }
   }
+  add_missed_components(mesh, function, options, passes);
   return passes;
 }
 
