@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -68,12 +69,32 @@ TEST(ValueRange, TakesTheVerticesOfALinearFunctionAndLeavesOutTheUnreached) {
   EXPECT_TRUE(value_range(mesh, VertexField(mesh, std::vector<double>(4, infinity)), 0).empty());
 }
 
+TEST(ValueRange, NoPointOfAnExcludedFaceComesUpToTheLevel) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng(seed);
+    const TriangleMesh mesh = random_mesh(rng);
+    SourceSet sources;
+    sources.add_point(random_surface_point(rng, mesh));
+    const ExactField field = ExactField::compute(mesh, sources);
+    const double level = random_real(rng, 0, 1) * field.max_vertex_distance();
+    const std::vector<char> may = faces_that_may_reach(mesh, field, level);
+    for (int k = 0; k < 300; ++k) {
+      const SurfacePoint point = random_surface_point(rng, mesh);
+      const double value = field.value(point);
+      EXPECT_TRUE(may[point.face] || value < level || value == infinity) << "seed " << seed << ": " << value;
+    }
+    const std::vector<char> beyond = faces_that_may_reach(mesh, field, 4 * mesh.size() + field.max_vertex_distance());
+    EXPECT_EQ(std::count(beyond.begin(), beyond.end(), 1), 0) << "seed " << seed;
+  }
+}
+
 TEST(ValueRange, StopsOnRequest) {
   class Stop final : public Progress {
     bool cancelled() const override { return true; }
   };
   const TriangleMesh mesh = planar_grid(10, 10, 10, 10);
   EXPECT_THROW(value_range(mesh, LineDistance(mesh, 4.3), 1e-4, Stop{}), Error);
+  EXPECT_THROW(faces_that_may_reach(mesh, LineDistance(mesh, 4.3), 1, Stop{}), Error);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "impact/curve_checks.h"
+#include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/impact/passes.h"
 
@@ -37,6 +38,16 @@ struct Spiralled {
   double value(std::size_t i) const { return field.value(curve.points[i]); }
   double first_level() const { return contours.front()->level; }
   double last_level() const { return contours.back()->level; }
+};
+
+/// Wants to stop when it is asked for the n-th time.
+class StopAt final : public Progress {
+ public:
+  explicit StopAt(long n) : left_(n) {}
+  bool cancelled() const override { return --left_ <= 0; }
+
+ private:
+  mutable long left_;
 };
 
 /// From the last point of the first whole ring to the first point of the last one.
@@ -180,6 +191,16 @@ TEST(spiral, of_one_contour_is_that_contour) {
   test::expect_on_surface(s.mesh, s.curve);
   EXPECT_NEAR(length_of(s.curve), perimeter(s, *s.contours[0]), 1e-9);
   EXPECT_LE((s.curve.positions.front() - s.curve.positions.back()).norm(), 1e-12);
+}
+
+TEST(spiral, asks_all_along_whether_to_stop) {
+  const Spiralled s(test::hemisphere(10, 40, 20), 2, Vec3(20, 0, 0));
+  const auto n = static_cast<long>(s.curve.size());
+  ASSERT_GT(n, 100);
+  for (const long at : {1L, n / 8, n / 4}) {  // one extension may add several points
+    StopAt progress(at);
+    EXPECT_THROW(spiral(s.linker, s.field, s.contours, Vec3(20, 0, 0), progress), Error) << at;
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "isopath/core/error.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
@@ -94,6 +95,34 @@ TEST(strip, between_concentric_circles_runs_along_the_radii) {
   const Strip strip = least_strip(problem.p, problem.q, 1, 6);
   expect_monotone(strip, problem);
   for (const auto& [i, j] : strip) EXPECT_LE(std::abs(i - j), 1);
+}
+
+/// Two straight lines side by side, with so many points each.
+Problem ladder(int n) {
+  Problem problem;
+  problem.gap = 1;
+  problem.longest = 1.2;
+  for (int i = 0; i < n; ++i) {
+    problem.p.emplace_back(0.5 * i, 0, 0);
+    problem.q.emplace_back(0.5 * i, 1, 0);
+  }
+  return problem;
+}
+
+TEST(strip, of_long_polylines_fits_into_memory) {
+  // all pairs of points would be 4e10
+  const Problem problem = ladder(200000);
+  const Strip strip = least_strip(problem.p, problem.q, problem.gap, problem.longest);
+  expect_monotone(strip, problem);
+  for (const auto& [i, j] : strip) ASSERT_LE(std::abs(i - j), 1);
+}
+
+TEST(strip, stops_on_request) {
+  class Stop final : public Progress {
+    bool cancelled() const override { return true; }
+  } stop;
+  const Problem problem = ladder(5000);
+  EXPECT_THROW(least_strip(problem.p, problem.q, problem.gap, problem.longest, stop), Error);
 }
 
 TEST(strip, of_nothing_is_empty) {

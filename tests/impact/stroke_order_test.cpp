@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "isopath/core/error.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
@@ -172,6 +173,14 @@ TEST(stroke_order, lifts_once_between_two_heaps) {
   int lifts = 0;
   for (std::size_t i = 1; i < visits.size(); ++i) lifts += visits[i].run % 2 != visits[i - 1].run % 2 ? 1 : 0;
   EXPECT_EQ(lifts, 1);
+}
+
+TEST(stroke_order, stops_on_request) {
+  class Stop final : public Progress {
+    bool cancelled() const override { return true; }
+  } stop;
+  test::Rng rng(1);
+  EXPECT_THROW(order_runs({random_run(rng), random_run(rng)}, 1, 1, stop), Error);
 }
 
 TEST(stroke_order, of_nothing_is_nothing) { EXPECT_TRUE(order_runs({}, 1, 1).empty()); }

@@ -106,10 +106,13 @@ ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function
   return range;
 }
 
-std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level) {
+std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level,
+                                       const Progress& progress) {
   std::vector<char> may(mesh.n_faces(), 0);
-  tbb::parallel_for(Index{0}, mesh.n_faces(),
-                    [&](Index f) { may[f] = is_reached(mesh, function, f) && may_reach(mesh, function, f, level); });
+  tbb::parallel_for(Index{0}, mesh.n_faces(), [&](Index f) {
+    progress.checkpoint();
+    may[f] = is_reached(mesh, function, f) && may_reach(mesh, function, f, level);
+  });
   return may;
 }
 

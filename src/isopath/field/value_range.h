@@ -21,7 +21,8 @@ ValueRange value_range(const TriangleMesh& mesh, const SurfaceFunction& function
                        const Progress& progress = Progress::none());
 
 /// For each face whether the function may come up to `level` somewhere in it; where it says no, that is proven by the
-/// function's slope.
-std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level);
+/// function's slope. Never for faces with a corner that is not reached. Throws Error(cancelled) on request.
+std::vector<char> faces_that_may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, double level,
+                                       const Progress& progress = Progress::none());
 
 }  // namespace isopath

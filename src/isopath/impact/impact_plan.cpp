@@ -62,7 +62,7 @@ class Planner {
         progress_(progress),
         locator_(mesh),
         normals_(mesh),
-        linker_(mesh, locator_) {}
+        linker_(mesh, locator_, progress) {}
 
   ImpactPlan run() {
     progress_.stage("isolines");
@@ -82,7 +82,8 @@ class Planner {
     const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;
     for (const Passes::Run& run : passes_.runs) gates.push_back(gates_of(mesh_, passes_, run, samples));
     const double lift_cost = 20 * options_.spacing;
-    const std::vector<Visit> visits = order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost);
+    const std::vector<Visit> visits =
+        order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost, progress_);
     for (std::size_t i = 0; i < visits.size(); ++i) {
       progress_.checkpoint();
       add_run(passes_.runs[visits[i].run], visits[i].gate, assembly);
@@ -110,7 +111,7 @@ class Planner {
     if (!run.closed) return add_open(contours, gate & 2, assembly);
     const auto near = [&] { return assembly.empty() ? position_of(mesh_, contours[0]->points[0]) : assembly.end(); };
     if (options_.pattern == Pattern::spiral) {
-      assembly.add_stroke(spiral(linker_, function_, contours, near()));
+      assembly.add_stroke(spiral(linker_, function_, contours, near(), progress_));
       return;
     }
     for (const Contour* contour : contours) assembly.add_stroke(closed_from(mesh_, *contour, near()));

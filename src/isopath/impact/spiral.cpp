@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "isopath/core/quiet_progress.h"
 #include "isopath/impact/strip.h"
 #include "isopath/mesh/surface_walk.h"
 
@@ -94,14 +95,15 @@ SurfacePoint point_at_level(const TriangleMesh& mesh, const SurfaceFunction& fun
 
 class SpiralBuilder {
  public:
-  SpiralBuilder(const SurfaceLinker& linker, const SurfaceFunction& function) : linker_(linker), function_(function) {}
+  SpiralBuilder(const SurfaceLinker& linker, const SurfaceFunction& function, const Progress& progress)
+      : linker_(linker), function_(function), progress_(progress) {}
 
   SurfaceCurve take() { return std::move(curve_); }
 
   /// Walks a contour whole, from its point nearest to a place.
   void walk_whole(const Contour& contour, const Vec3& from) {
     const SurfaceCurve ring = closed_from(linker_.mesh(), contour, from);
-    for (const SurfacePoint& point : ring.points) linker_.extend(curve_, point);
+    for (const SurfacePoint& point : ring.points) extend(point);
   }
 
   Vec3 end() const { return curve_.positions.back(); }
@@ -113,7 +115,7 @@ class SpiralBuilder {
     const double longest = 0.5 * gap;
     const Ring p = make_ring(linker_.mesh(), from, end(), shortest, longest);
     const Ring q = make_ring(linker_.mesh(), to, end(), shortest, longest);
-    const Strip strip = least_strip(p.curve.positions, q.curve.positions, gap, 6 * gap);
+    const Strip strip = least_strip(p.curve.positions, q.curve.positions, gap, 6 * gap, progress_);
     if (strip.empty()) return splits > 0 && turn_in_two(from, to, splits - 1);
     for (const auto& [i, j] : strip) {
       const double share = 0.5 * (p.arc[i] + q.arc[j]);
@@ -121,16 +123,22 @@ class SpiralBuilder {
       if (share >= 1) break;
       const double level = (1 - share) * p.level + share * q.level;
       const auto rung = linker_.link(p.curve.points[i], q.curve.points[j], 8 * gap);
-      if (rung) linker_.extend(curve_, point_at_level(linker_.mesh(), function_, rung->points, level, 1e-4 * gap));
+      if (rung) extend(point_at_level(linker_.mesh(), function_, rung->points, level, 1e-4 * gap));
     }
-    linker_.extend(curve_, q.curve.points.front());
+    extend(q.curve.points.front());
     return true;
   }
 
  private:
+  void extend(const SurfacePoint& to) {
+    progress_.checkpoint();
+    linker_.extend(curve_, to);
+  }
+
   bool turn_in_two(const Contour& from, const Contour& to, int splits) {
     const double level = 0.5 * (from.level + to.level);
-    for (const Contour& middle : isolines(linker_.mesh(), function_, std::span(&level, 1))) {
+    QuietProgress quiet(progress_);
+    for (const Contour& middle : isolines(linker_.mesh(), function_, std::span(&level, 1), {}, quiet)) {
       if (!middle.closed) continue;
       const SurfaceCurve before = curve_;
       if (turn(from, middle, splits) && turn(middle, to, splits)) return true;
@@ -141,14 +149,15 @@ class SpiralBuilder {
 
   const SurfaceLinker& linker_;
   const SurfaceFunction& function_;
+  const Progress& progress_;
   SurfaceCurve curve_;
 };
 
 }  // namespace
 
 SurfaceCurve spiral(const SurfaceLinker& linker, const SurfaceFunction& function,
-                    std::span<const Contour* const> contours, const Vec3& start) {
-  SpiralBuilder builder(linker, function);
+                    std::span<const Contour* const> contours, const Vec3& start, const Progress& progress) {
+  SpiralBuilder builder(linker, function, progress);
   builder.walk_whole(*contours.front(), start);
   bool whole = true;  // the last contour was walked all round
   for (std::size_t k = 1; k < contours.size(); ++k) {

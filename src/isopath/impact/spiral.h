@@ -3,6 +3,7 @@
 #include <span>
 
 #include "isopath/contour/isolines.h"
+#include "isopath/core/progress.h"
 #include "isopath/impact/surface_curve.h"
 
 namespace isopath {
@@ -13,8 +14,9 @@ namespace isopath {
 /// in the order to be walked; the curve starts at the first one's point nearest to `start`.
 ///
 /// Where no strip exists between two contours, the contour in between is inserted and both halves are tried; where that
-/// fails too, the next contour is walked whole, after a link on the surface.
+/// fails too, the next contour is walked whole, after a link on the surface. Throws Error(cancelled) on request.
 SurfaceCurve spiral(const SurfaceLinker& linker, const SurfaceFunction& function,
-                    std::span<const Contour* const> contours, const Vec3& start);
+                    std::span<const Contour* const> contours, const Vec3& start,
+                    const Progress& progress = Progress::none());
 
 }  // namespace isopath

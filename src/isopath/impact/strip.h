@@ -3,7 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "isopath/impact/surface_curve.h"
+#include "isopath/core/geometry.h"
+#include "isopath/core/progress.h"
 
 namespace isopath {
 
@@ -12,9 +13,10 @@ namespace isopath {
 using Strip = std::vector<std::pair<Index, Index>>;
 
 /// The strip of least total rung length between two polylines (Fuchs, Kedem & Uselton 1977, as a path in the grid
-/// graph; paper ch. 7), found by A*. `gap` is the geodesic distance between the polylines, so that no rung is shorter
-/// and gap × remaining steps never overestimates. Rungs longer than `longest` do not exist; empty when no strip is
-/// left.
-Strip least_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q, double gap, double longest);
+/// graph; paper ch. 7), found by A*. `gap` is the geodesic distance between the polylines: no rung counts as shorter.
+/// Rungs longer than `longest` do not exist; empty when no strip is left. Memory grows with the number of rungs that
+/// exist. Throws Error(cancelled) on request.
+Strip least_strip(const std::vector<Vec3>& p, const std::vector<Vec3>& q, double gap, double longest,
+                  const Progress& progress = Progress::none());
 
 }  // namespace isopath

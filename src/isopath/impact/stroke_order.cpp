@@ -1,6 +1,8 @@
 #include "isopath/impact/stroke_order.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace isopath {
 namespace {
@@ -16,12 +18,14 @@ double least_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 /// Gates numbered through, and the cost of the way from one's exit to another's entry.
 class GateCosts {
  public:
-  GateCosts(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost) {
+  GateCosts(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost,
+            const Progress& progress) {
     for (std::size_t r = 0; r < runs.size(); ++r) {
       for (std::size_t g = 0; g < runs[r].size(); ++g) gates_.push_back({r, g});
     }
     cost_.resize(size() * size());
     for (std::size_t a = 0; a < size(); ++a) {
+      progress.checkpoint();
       for (std::size_t b = 0; b < size(); ++b) {
         if (gates_[a].run == gates_[b].run) continue;
         const double d =
@@ -48,11 +52,12 @@ double cost_of(const GateCosts& gates, const Tour& tour) {
   return sum;
 }
 
-Tour nearest_neighbour(const GateCosts& gates, std::size_t start, std::size_t runs) {
+Tour nearest_neighbour(const GateCosts& gates, std::size_t start, std::size_t runs, const Progress& progress) {
   Tour tour{start};
   std::vector<char> done(runs, 0);
   done[gates[start].run] = 1;
   while (tour.size() < runs) {
+    progress.checkpoint();
     std::size_t next = gates.size();
     for (std::size_t g = 0; g < gates.size(); ++g) {
       if (done[gates[g].run]) continue;
@@ -75,10 +80,11 @@ double insertion_cost(const GateCosts& gates, const Tour& tour, std::size_t i, s
 
 /// Takes one run after the other out and puts it back where, and by the gate where, it costs least; until nothing
 /// improves.
-void relocate_runs(const GateCosts& gates, Tour& tour) {
+void relocate_runs(const GateCosts& gates, Tour& tour, const Progress& progress) {
   for (bool improved = true; improved;) {
     improved = false;
     for (std::size_t i = 0; i < tour.size(); ++i) {
+      progress.checkpoint();
       Tour rest = tour;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       const double now = insertion_cost(gates, rest, i, tour[i]);
@@ -108,13 +114,14 @@ constexpr std::size_t most_starts = 64;
 
 }  // namespace
 
-std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost) {
-  const GateCosts gates(runs, longest_link, lift_cost);
+std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost,
+                              const Progress& progress) {
+  const GateCosts gates(runs, longest_link, lift_cost, progress);
   Tour best;
   const std::size_t stride = std::max<std::size_t>(1, gates.size() / most_starts);
   for (std::size_t start = 0; start < gates.size(); start += stride) {
-    Tour tour = nearest_neighbour(gates, start, runs.size());
-    relocate_runs(gates, tour);
+    Tour tour = nearest_neighbour(gates, start, runs.size(), progress);
+    relocate_runs(gates, tour, progress);
     if (best.empty() || cost_of(gates, tour) < cost_of(gates, best)) best = std::move(tour);
   }
   std::vector<Visit> visits;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "isopath/core/geometry.h"
+#include "isopath/core/progress.h"
 
 namespace isopath {
 
@@ -18,8 +19,10 @@ struct Visit {
   std::size_t gate = 0;
 };
 
-/// An order of runs, and a gate for each, with short ways between them: nearest neighbour from every possible start,
-/// the best kept. Ways longer than `longest_link` cost `lift_cost` more, as the tool has to leave the surface.
-std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost);
+/// An order of runs, and a gate for each, with short ways between them: nearest neighbour from up to 127 starts, evenly
+/// spread over all gates, each improved by moving single runs; the best kept. Ways longer than `longest_link` cost
+/// `lift_cost` more, as the tool has to leave the surface. Throws Error(cancelled) on request.
+std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost,
+                              const Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "isopath/core/quiet_progress.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/mesh/surface_walk.h"
 
@@ -70,7 +71,9 @@ std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const 
   }
   SourceSet source;
   source.add_point(from);
-  const ExactField field = ExactField::compute(mesh_, source, {.stop_distance = longest});
+  QuietProgress quiet(progress_);
+  quiet.checkpoint();
+  const ExactField field = ExactField::compute(mesh_, source, {.stop_distance = longest}, quiet);
   if (field.value(to) > longest) return std::nullopt;
   SurfaceCurve path = make_curve(mesh_, field.shortest_path(to));
   path.reverse();

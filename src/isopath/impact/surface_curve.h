@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "isopath/contour/isolines.h"
+#include "isopath/core/progress.h"
 #include "isopath/mesh/surface_locator.h"
 #include "isopath/mesh/surface_point.h"
 
@@ -29,10 +30,12 @@ SurfaceCurve rotated(const SurfaceCurve& closed, std::size_t start);
 /// A closed contour walked once round, from its point nearest to a place back to that point.
 SurfaceCurve closed_from(const TriangleMesh& mesh, const Contour& contour, const Vec3& place);
 
-/// Joins points of the surface by short curves on it.
+/// Joins points of the surface by short curves on it. Throws Error(cancelled) when `progress` asks for it. The mesh,
+/// the locator and `progress` must outlive it.
 class SurfaceLinker {
  public:
-  SurfaceLinker(const TriangleMesh& mesh, const SurfaceLocator& locator) : mesh_(mesh), locator_(locator) {}
+  SurfaceLinker(const TriangleMesh& mesh, const SurfaceLocator& locator, const Progress& progress = Progress::none())
+      : mesh_(mesh), locator_(locator), progress_(progress) {}
 
   /// A curve on the surface from `from` to `to`, both included: along the plane section where that leads there, else
   /// the geodesic. None when every way is longer than `longest`.
@@ -48,6 +51,7 @@ class SurfaceLinker {
  private:
   const TriangleMesh& mesh_;
   const SurfaceLocator& locator_;
+  const Progress& progress_;
 };
 
 }  // namespace isopath
