@@ -102,6 +102,17 @@ TEST(gap, at_vertices_is_twice_the_exact_distance) {
   }
 }
 
+TEST(gap, is_infinite_where_no_pass_reaches) {
+  const Plate plate{test::planar_cells(5, 2, [](int i, int) { return i != 2; })};  // two plates, 1 apart
+  ImpactCurve curve;
+  test::append(curve, test::line(plate.linker, {1, 0, 0}, {1, 2, 0}), MoveKind::cover);
+  const GapReport report = measure_gap(plate.mesh, curve, 2);
+  EXPECT_EQ(report.max, infinity);
+  EXPECT_EQ(report.mean, infinity);
+  EXPECT_EQ(report.cv, infinity);
+  EXPECT_NEAR(report.covered_fraction, 0.5, 1e-12);
+}
+
 TEST(gap, counts_covering_moves_only) {
   const Plate plate{test::planar_grid(20, 10, 20, 10)};
   // A line at x = 2, a link along the boundary and across at x = 18, a lift from there.

@@ -7,7 +7,7 @@
 
 namespace isopath {
 
-/// The exact distance from the covering part of a curve: half the gap between passes.
+/// The distance from the covering part of a curve: half the gap between passes.
 struct CoverField {
   ExactField field;
   /// For every source element of the field, the point of the curve that its segment, or its point, starts at.
@@ -17,7 +17,8 @@ struct CoverField {
 /// Bound on the error of these distances, in spacings: no gap is off by more than twice this.
 inline constexpr double cover_accuracy = 1e-4;
 
-/// Throws Error(no_plan) when the curve covers nothing, Error(cancelled) on request.
+/// The distance with `cover_accuracy`. Throws Error(no_plan) when the curve covers nothing, Error(cancelled) on
+/// request.
 CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress);
 
 }  // namespace isopath

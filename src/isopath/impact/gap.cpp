@@ -12,10 +12,10 @@
 namespace isopath {
 namespace {
 
-/// Distance between samples, in spacings: the distance from the path has slope 1, so no sample's gap is off by more
-/// than a third of this.
+/// Distance between samples, in spacings: the gap, twice a distance, has slope 2, so that in the part around a sample
+/// it is off by no more than 4/3 of this. Faces with sides of more than `most_divisions` parts have coarser ones.
 constexpr double sample_distance = 1.0 / 6;
-constexpr int most_divisions = 64;
+constexpr double most_divisions = 64;  ///< of a side
 constexpr double covered_limit = 1.02;
 
 struct Sample {
@@ -28,7 +28,7 @@ void sample_face(const ExactField& field, Index face, double step, std::vector<S
   const TriangleMesh& mesh = field.mesh();
   double longest = 0;
   for (Index h = 3 * face; h < 3 * face + 3; ++h) longest = std::max(longest, mesh.edge_length(mesh.edge_of(h)));
-  const int n = std::clamp(static_cast<int>(std::ceil(longest / step)), 1, most_divisions);
+  const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, most_divisions));
   const double area = mesh.face_area(face) / (n * n);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n - i; ++j) {
@@ -48,11 +48,10 @@ std::vector<Sample> sample_surface(const ExactField& field, double step, const P
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
     const auto first = static_cast<Index>(k) * chunk;
     for (Index f = first; f < std::min(n, first + chunk); ++f) {
-      if (progress.cancelled()) return;  // a large face that the path crosses many times takes a while
+      progress.checkpoint();  // a large face that the path crosses many times takes a while
       sample_face(field, f, step, parts[k]);
     }
   });
-  progress.checkpoint();
   std::vector<Sample> samples;
   for (const auto& part : parts) samples.insert(samples.end(), part.begin(), part.end());
   return samples;
@@ -89,7 +88,9 @@ GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double
     if (mesh.outgoing(v) != no_index) report.max = std::max(report.max, report.vertex_gap[v]);
   }
   report.mean = sum / report.area;
-  report.cv = std::sqrt(std::max(0.0, square_sum / report.area - report.mean * report.mean)) / report.mean;
+  report.cv = infinity;
+  if (report.mean < infinity)
+    report.cv = std::sqrt(std::max(0.0, square_sum / report.area - report.mean * report.mean)) / report.mean;
   report.covered_fraction = covered / report.area;
   double below = 0;
   for (const Sample& s : samples) {

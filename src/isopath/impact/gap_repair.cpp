@@ -5,6 +5,7 @@
 #include "isopath/contour/contour_graph.h"
 #include "isopath/field/value_range.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/passes.h"
 
 namespace isopath {
 namespace {
@@ -79,8 +80,7 @@ std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& fie
   std::vector<double> levels;
   std::vector<char> wide;  // the faces that the lowest level may lie in
   for (double level = 0.5 * widest_gap * spacing;; level += 0.5 * spacing) {
-    std::vector<char> may_reach = faces_that_may_reach(mesh, field, level);
-    progress.checkpoint();
+    std::vector<char> may_reach = faces_that_may_reach(mesh, field, level, progress);
     if (std::find(may_reach.begin(), may_reach.end(), 1) == may_reach.end()) break;
     if (levels.empty()) wide = std::move(may_reach);
     levels.push_back(level);
@@ -89,9 +89,9 @@ std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& fie
   if (levels.empty()) return kept;
   ContourSet set =
       contour_set(mesh, BoundedField(field, std::move(wide)), levels, {.chord_tolerance = 1e-3 * spacing}, progress);
-  for (std::size_t k = 0; k < set.contours.size(); ++k) {
-    const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
-    if (place % 2 == 0 || set.graph.children[k].empty()) kept.push_back(std::move(set.contours[k]));
+  const std::vector<char> keep = mark_passes(set, levels);
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    if (keep[k]) kept.push_back(std::move(set.contours[k]));
   }
   return kept;
 }
@@ -105,6 +105,7 @@ int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, d
   const DetourBuilder builder(mesh, normals, curve, cover);
   std::vector<Detour> detours;
   for (const Contour& contour : open_places(mesh, cover.field, spacing, progress)) {
+    progress.checkpoint();
     detours.push_back(builder.around(contour));
   }
   if (detours.empty()) return 0;

@@ -14,17 +14,6 @@ struct Links {
   std::vector<std::vector<Index>> parents;
 };
 
-/// Levels alternate: passes at even places, between them half levels. A half-level contour without anything above it
-/// encloses a top that the pass below does not reach: it becomes a pass itself.
-std::vector<char> mark_passes(const ContourSet& set, const std::vector<double>& levels) {
-  std::vector<char> keep(set.contours.size(), 0);
-  for (std::size_t k = 0; k < set.contours.size(); ++k) {
-    const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
-    keep[k] = place % 2 == 0 || set.graph.children[k].empty();
-  }
-  return keep;
-}
-
 Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
   Links links;
   links.children.resize(set.contours.size());
@@ -80,6 +69,15 @@ void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& func
 }
 
 }  // namespace
+
+std::vector<char> mark_passes(const ContourSet& set, std::span<const double> levels) {
+  std::vector<char> keep(set.contours.size(), 0);
+  for (std::size_t k = 0; k < set.contours.size(); ++k) {
+    const auto place = std::lower_bound(levels.begin(), levels.end(), set.contours[k].level) - levels.begin();
+    keep[k] = place % 2 == 0 || set.graph.children[k].empty();
+  }
+  return keep;
+}
 
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
   Passes passes;

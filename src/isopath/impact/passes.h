@@ -1,11 +1,17 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "isopath/contour/contour_graph.h"
 #include "isopath/core/progress.h"
 
 namespace isopath {
+
+/// Which contours of a set become passes. `levels`, those of the set, alternate: passes at even places, between them
+/// half levels. A half-level contour without anything above it encloses a top that the pass below does not reach: it
+/// becomes a pass itself.
+std::vector<char> mark_passes(const ContourSet& set, std::span<const double> levels);
 
 /// The isolines that become passes, and the runs they form.
 struct Passes {
@@ -16,13 +22,13 @@ struct Passes {
     bool closed = false;
   };
   std::vector<Run> runs;
-  double spacing =
-      0;  ///< the spacing that was used: the one asked for, or a little less so that passes divide the range evenly
+  /// The spacing that was used: the one asked for, or a little less so that passes divide the range evenly.
+  double spacing = 0;
 };
 
 /// Levels half a spacing in from the least and the greatest value and evenly between, and in addition a last pass
-/// wherever the function rises by more than half a spacing above the last level inside it (issue of paper ch. 8: bumps
-/// and branches). Empty when the function is finite nowhere.
+/// wherever the function rises by more than half a spacing above the last level inside it (paper ch. 8: bumps and
+/// branches). Empty when the function is finite nowhere. Throws Error(cancelled) on request.
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress);
 
 }  // namespace isopath
