@@ -46,14 +46,14 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
   std::string temporary = path.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(temporary.data());
   if (descriptor < 0) fail(path, "cannot write", errno);
-  bool good = write_all(descriptor, content) && ::fchmod(descriptor, default_mode()) == 0;
-  int error = errno;
-  good = ::close(descriptor) == 0 && good;
-  if (good && ::rename(temporary.c_str(), path.c_str()) != 0) {
-    good = false;
-    error = errno;
-  }
-  if (!good) {
+  int error = 0;  // the first that occurs
+  const auto note = [&](bool good) {
+    if (!good && error == 0) error = errno;
+  };
+  note(write_all(descriptor, content) && ::fchmod(descriptor, default_mode()) == 0);
+  note(::close(descriptor) == 0);
+  if (error == 0) note(::rename(temporary.c_str(), path.c_str()) == 0);
+  if (error != 0) {
     ::unlink(temporary.c_str());
     fail(path, "cannot write", error);
   }

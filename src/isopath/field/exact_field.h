@@ -10,7 +10,7 @@
 
 namespace isopath {
 
-class ExactFieldData;
+struct ExactFieldData;
 
 struct ExactFieldOptions {
   /// Windows that start farther than this are not propagated; points beyond are unreached or bounded from above.

@@ -11,8 +11,7 @@ namespace isopath {
 
 /// What an exact field keeps: the windows of every edge side by side, vertex distances and roots, and which sources lie
 /// in a face.
-class ExactFieldData {
- public:
+struct ExactFieldData {
   ExactFieldData(const TriangleMesh& m, const SourceSet& s) : mesh(m), geometry(m), sources(s) {}
 
   /// Ids of an edge's windows: from first_window[edge] up to first_window[edge + 1].
@@ -81,11 +80,13 @@ struct WayBack {
   Vec2 towards = Vec2::Zero();  ///< to the unfolded source, in the frame of half-edge 3·face
 };
 
-/// The shortest way back from a point of a face. Ways through edges that `skip` marks (by corner index of their tail)
-/// and to corners that hold the point itself are left out.
+/// Edges of a face that a way back must not go through, by the corner index of their tail.
 struct SkippedEdges {
   bool skip[3] = {false, false, false};
 };
+
+/// The shortest way back from a point of a face, not through the skipped edges, nor to corners that hold the point
+/// itself.
 WayBack best_way_back(const ExactFieldData& data, Index face, const Vec3& barycentric,
                       const SkippedEdges& skipped = {});
 

@@ -13,8 +13,6 @@
 namespace isopath {
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Whether two directions enclose no more than a right angle. On a grid many do exactly, and rounding must not decide
 /// which vertex splits a corner.
 bool at_most_right(const Vec2& a, const Vec2& b) { return a.dot(b) >= -1e-9 * a.norm() * b.norm(); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <limits>
 #include <queue>
 #include <utility>
 
@@ -13,13 +14,21 @@
 namespace isopath {
 namespace {
 
+/// Throws Error(bad_usage) when an Index cannot number the nodes.
+std::size_t node_count(const TriangleMesh& mesh, const GraphOptions& options) {
+  const auto on_edges = static_cast<std::size_t>(mesh.n_edges()) * static_cast<std::size_t>(options.virtual_vertices);
+  const std::size_t count = static_cast<std::size_t>(mesh.n_vertices()) + on_edges;
+  constexpr std::size_t most = std::numeric_limits<Index>::max();
+  if (count <= most) return count;
+  throw Error(ErrorCode::bad_usage, "too many virtual vertices for this mesh",
+              {.element = "virtual_vertices", .value = fmt::format("{} nodes, limit {}", count, most)});
+}
+
 /// Nodes are the vertices, then `k` points on every edge. Arcs join the nodes of a face; they are not stored.
 class SurfaceGraph {
  public:
   SurfaceGraph(const TriangleMesh& mesh, const GraphOptions& options)
-      : mesh_(mesh),
-        options_(options),
-        distance_(mesh.n_vertices() + mesh.n_edges() * options.virtual_vertices, infinity) {
+      : mesh_(mesh), options_(options), distance_(node_count(mesh, options), infinity) {
     if (options.across_pairs) join_across_pairs();
   }
 

@@ -28,7 +28,8 @@ struct GraphOptions {
 /// most L / (2 (m + 1)). More triangles of the same shape therefore do not bring the values closer to d, more virtual
 /// vertices do.
 ///
-/// Throws Error(bad_usage) for an empty source set or invalid options, Error(cancelled) on request.
+/// Throws Error(bad_usage) for an empty source set, invalid options or more than 2³¹ - 1 nodes, Error(cancelled) on
+/// request.
 std::vector<double> graph_distances(const TriangleMesh& mesh, const SourceSet& sources,
                                     const GraphOptions& options = {}, Progress& progress = Progress::none());
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "isopath/field/source_faces.h"
 #include "isopath/field/window_propagation.h"
 
 namespace isopath {
@@ -23,14 +24,6 @@ void clip(double f0, double slope, double& low, double& high) {
   } else {
     high = std::min(high, x);
   }
-}
-
-/// The half-edges of the faces that hold a point supported by an edge, or any half-edge of its face.
-std::vector<Index> faces_around(const TriangleMesh& mesh, const Support& support) {
-  if (support.kind == Support::Kind::face) return {support.index};
-  std::vector<Index> faces{TriangleMesh::face_of(support.index)};
-  if (mesh.twin(support.index) != no_index) faces.push_back(TriangleMesh::face_of(mesh.twin(support.index)));
-  return faces;
 }
 
 bool on_edge(const SourceElement& segment, Index& halfedge) {
@@ -149,7 +142,7 @@ void WindowPropagation::start_point(std::span<const SourceElement> elements, Ind
     start_vertex(elements, id, support.index);
     return;
   }
-  for (const Index face : faces_around(mesh_, support)) start_point_in_face(elements, id, face);
+  for (const Index face : faces_of(mesh_, elements[id])) start_point_in_face(elements, id, face);
   if (support.kind == Support::Kind::edge) {
     Window window;
     window.end = geometry_.length(support.index);
