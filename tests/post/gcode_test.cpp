@@ -101,6 +101,24 @@ TEST(Gcode, LiftsAreRapidUntilTheyComeDown) {
   }
 }
 
+TEST(Gcode, ALiftAtTheEndOrBeforeAnotherOneComesDownAtItsFeed) {
+  ToolPath path;
+  const auto add = [&](MoveKind kind, double x, double z, Index piece) {
+    path.points.push_back({.kind = kind, .piece = piece, .tip = Vec3(x, 0, z), .feed_mm_per_min = 100});
+  };
+  add(MoveKind::cover, 0, 0, 0);
+  for (const Index piece : {1, 2}) {
+    add(MoveKind::lift, 10 * piece, 20, piece);
+    add(MoveKind::lift, 10 * piece, 0, piece);
+  }
+  for (const GcodeAxes axes : {GcodeAxes::xyz, GcodeAxes::xyzac}) {
+    const std::vector<Block> moves = moves_of(gcode(path, {.axes = axes}));
+    for (std::size_t i = 1; i < path.points.size(); ++i) {
+      EXPECT_EQ(moves[i].words.at('G'), path.points[i].tip.z() == 0 ? 1 : 0) << i;
+    }
+  }
+}
+
 TEST(Gcode, SprayIsOnOnTheSurfaceOnly) {
   const ToolPath path = five_axis_path();
   const std::string program = gcode(path, {.process = Process::spray});

@@ -106,6 +106,41 @@ TEST(MakeToolPath, TangentIsAUnitVectorAcrossTheAxisAndForward) {
   }
 }
 
+TEST(MakeToolPath, EveryLiftLandsSlowlyThoughNothingIsCoveredBehindIt) {
+  ImpactCurve curve;
+  const auto add = [&](MoveKind kind, double x, double z, Index piece) {
+    ImpactPoint point;
+    point.kind = kind;
+    point.position = {x, 0, z};
+    point.piece = piece;
+    curve.points.push_back(point);
+  };
+  add(MoveKind::cover, 0, 0, 0);
+  for (const Index piece : {1, 2}) {  // a piece that is but the point where the lift ends
+    add(MoveKind::lift, 10 * piece - 10, 20, piece);
+    add(MoveKind::lift, 10 * piece, 20, piece);
+    add(MoveKind::lift, 10 * piece, 0, piece);
+  }
+  const ToolOptions options = all_points(Process::mill);
+  for (const ToolPoint& point : make_tool_path(curve, options).points) {
+    if (point.kind != MoveKind::lift) continue;
+    const bool on_surface = point.tip.z() == 0;
+    EXPECT_EQ(point.feed_mm_per_min, on_surface ? options.link_feed_mm_per_min : options.rapid_speed_mm_per_min);
+  }
+}
+
+TEST(MakeToolPath, StopsOnRequest) {
+  class Stop final : public Progress {
+    bool cancelled() const override { return true; }
+  } stop;
+  ImpactCurve curve;
+  for (const double x : {0.0, 1.0, 2.0}) {
+    ImpactPoint& point = curve.points.emplace_back();
+    point.position.x() = x;
+  }
+  EXPECT_THROW(make_tool_path(curve, {}, stop), Error);
+}
+
 TEST(MakeToolPath, TimeIsTheSumOfLengthOverFeed) {
   ImpactCurve curve;
   const auto add = [&](MoveKind kind, double x, double z, Index piece) {

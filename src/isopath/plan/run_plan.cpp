@@ -186,7 +186,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   clock.ends("gap");
 
   progress.stage("tool path");
-  result.tool = make_tool_path(result.impact.curve, job.tool);
+  result.tool = make_tool_path(result.impact.curve, job.tool, progress);
   clock.ends("tool");
 
   progress.stage("program");

@@ -40,9 +40,7 @@ void check_straight(const ToolPath& path) {
 bool is_lift(const ToolPath& path, std::size_t i) { return path.points[i].kind == MoveKind::lift; }
 
 // Through the air at rapid speed; the end of a lift comes down at its feed.
-bool is_rapid(const ToolPath& path, std::size_t i) {
-  return is_lift(path, i) && (i + 1 == path.points.size() || is_lift(path, i + 1));
-}
+bool is_rapid(const ToolPath& path, std::size_t i) { return is_lift(path, i) && !lands(path, i); }
 
 /// Writes one program; knows what the control already knows.
 class Writer {

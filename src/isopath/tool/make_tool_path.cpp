@@ -76,8 +76,7 @@ double feed_of(const ToolPath& path, std::size_t i, const ToolOptions& options) 
     case MoveKind::lift:
       break;
   }
-  const bool lands = i + 1 < path.points.size() && path.points[i + 1].kind != MoveKind::lift;
-  return lands ? options.link_feed_mm_per_min : options.rapid_speed_mm_per_min;
+  return lands(path, i) ? options.link_feed_mm_per_min : options.rapid_speed_mm_per_min;
 }
 
 void set_feeds_and_times(ToolPath& path, const ToolOptions& options) {
@@ -92,10 +91,10 @@ void set_feeds_and_times(ToolPath& path, const ToolOptions& options) {
 
 }  // namespace
 
-ToolPath make_tool_path(const ImpactCurve& curve, const ToolOptions& options) {
+ToolPath make_tool_path(const ImpactCurve& curve, const ToolOptions& options, const Progress& progress) {
   options.validate();
   check_points(curve);
-  ToolPath path = thin_path(lift_points(curve, options), options.chord_tolerance, options.axis_tolerance);
+  ToolPath path = thin_path(lift_points(curve, options), options.chord_tolerance, options.axis_tolerance, progress);
   set_feeds_and_times(path, options);
   set_tangents(path);
   return path;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "isopath/core/progress.h"
 #include "isopath/impact/impact_curve.h"
 #include "isopath/tool/tool_model.h"
 #include "isopath/tool/tool_path.h"
@@ -16,7 +17,9 @@ namespace isopath {
 /// remaining ones reproduce are left out (thin_path), and tangents are set last (set_tangents).
 ///
 /// Throws Error(bad_usage) from validate(); Error(bad_input) when a point or normal is not finite or a normal not unit;
-/// Error(no_plan) when the fixed axis would have to come through the surface, which then faces away from it.
-ToolPath make_tool_path(const ImpactCurve& curve, const ToolOptions& options = {});
+/// Error(no_plan) when the fixed axis would have to come through the surface, which then faces away from it;
+/// Error(cancelled) on request.
+ToolPath make_tool_path(const ImpactCurve& curve, const ToolOptions& options = {},
+                        const Progress& progress = Progress::none());
 
 }  // namespace isopath

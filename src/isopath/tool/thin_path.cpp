@@ -25,11 +25,12 @@ bool same_run(const ToolPoint& a, const ToolPoint& b) { return a.kind == b.kind 
 
 // Marks the points of [first, last] to keep; the ends already are.
 void keep_needed(const std::vector<ToolPoint>& points, std::size_t first, std::size_t last, double chord, double angle,
-                 std::vector<char>& keep) {
+                 std::vector<char>& keep, const Progress& progress) {
   std::vector<std::pair<std::size_t, std::size_t>> open = {{first, last}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
     open.pop_back();
+    progress.checkpoint();
     double worst = 1;
     std::size_t split = a;
     for (std::size_t i = a + 1; i < b; ++i) {
@@ -57,7 +58,7 @@ Vec3 axis_between(const Vec3& a, const Vec3& b, double u) {
   return (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / sine;
 }
 
-ToolPath thin_path(const ToolPath& path, double chord_tolerance, double axis_tolerance) {
+ToolPath thin_path(const ToolPath& path, double chord_tolerance, double axis_tolerance, const Progress& progress) {
   const std::vector<ToolPoint>& points = path.points;
   if (!(chord_tolerance > 0) || points.size() < 3) return path;
   std::vector<char> keep(points.size(), 0);
@@ -65,7 +66,7 @@ ToolPath thin_path(const ToolPath& path, double chord_tolerance, double axis_tol
     std::size_t last = first;
     while (last + 1 < points.size() && same_run(points[first], points[last + 1])) ++last;
     keep[first] = keep[last] = 1;
-    keep_needed(points, first, last, chord_tolerance, axis_tolerance, keep);
+    keep_needed(points, first, last, chord_tolerance, axis_tolerance, keep, progress);
     first = last + 1;
   }
   ToolPath result;

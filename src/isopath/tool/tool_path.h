@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "isopath/impact/impact_curve.h"
@@ -20,5 +21,12 @@ struct ToolPoint {
 struct ToolPath {
   std::vector<ToolPoint> points;
 };
+
+/// True for the move to point `i` when it is the last of a lift: it comes down on to the surface.
+inline bool lands(const ToolPath& path, std::size_t i) {
+  const auto& points = path.points;
+  if (points[i].kind != MoveKind::lift) return false;
+  return i + 1 == points.size() || points[i + 1].kind != MoveKind::lift || points[i + 1].piece != points[i].piece;
+}
 
 }  // namespace isopath
