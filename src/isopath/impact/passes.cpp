@@ -41,7 +41,7 @@ Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
 
 /// A component so small or narrow that no level meets it gets one pass half way between its extremes.
 void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& function, const IsolineOptions& options,
-                           Passes& passes) {
+                           Passes& passes, Progress& progress) {
   std::vector<ValueRange> range(mesh.n_components());
   std::vector<char> met(mesh.n_components(), 0);
   for (const Contour& contour : passes.contours) met[mesh.component_of(contour.points.front().face)] = 1;
@@ -60,7 +60,7 @@ void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& func
   for (Index c = 0; c < mesh.n_components(); ++c) {
     if (met[c] || !(range[c].high > range[c].low)) continue;
     const double level = 0.5 * (range[c].low + range[c].high);
-    for (Contour& contour : isolines(mesh, function, std::span(&level, 1), options)) {
+    for (Contour& contour : isolines(mesh, function, std::span(&level, 1), options, progress)) {
       if (mesh.component_of(contour.points.front().face) != c) continue;
       passes.runs.push_back({{static_cast<Index>(passes.contours.size())}, contour.closed});
       passes.contours.push_back(std::move(contour));
@@ -116,7 +116,7 @@ Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, 
       here = links.children[here][0];
     }
   }
-  add_missed_components(mesh, function, options, passes);
+  add_missed_components(mesh, function, options, passes, progress);
   return passes;
 }
 
