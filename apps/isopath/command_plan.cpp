@@ -65,7 +65,7 @@ void apply_tool(const PlanArguments& given, ToolOptions& tool) {
     tool.fixed_axis = Vec3(given.axis[0], given.axis[1], given.axis[2]);
   }
   replace(tool.cover_feed_mm_per_min, given.feed);
-  replace(tool.link_feed_mm_per_min, given.link_feed);
+  replace(tool.link_feed_mm_per_min, given.link_feed ? given.link_feed : given.feed);
   replace(tool.rapid_speed_mm_per_min, given.rapid);
 }
 
@@ -154,7 +154,7 @@ void add_tool_options(CLI::App& command, PlanArguments& given) {
       ->default_str(text(defaults.cover_feed_mm_per_min));
   command.add_option("--link-feed", given.link_feed, "Along links, mm/min")
       ->check(number_above_0())
-      ->default_str(text(defaults.link_feed_mm_per_min));
+      ->default_str("that of --feed");
   command.add_option("--rapid", given.rapid, "Along lifts, mm/min")
       ->check(number_above_0())
       ->default_str(text(defaults.rapid_speed_mm_per_min));

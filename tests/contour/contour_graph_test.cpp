@@ -9,6 +9,7 @@
 #include "contour/functions.h"
 #include "isopath/contour/bands.h"
 #include "isopath/contour/level_cut.h"
+#include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 
 namespace isopath {
@@ -215,6 +216,25 @@ TEST(contour_graph, of_random_point_distances_is_consistent) {
     for (std::size_t k = 0; k < set.contours.size(); ++k) {
       EXPECT_EQ(set.graph.parents[k].empty(), set.contours[k].level == set.contours[0].level) << "contour " << k;
     }
+  }
+}
+
+TEST(contour_graph, of_many_sources_on_few_faces_is_consistent) {
+  // as a path on a coarse part: fronts meet everywhere inside the faces, and contours of neighbouring levels may touch
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Rng rng(seed);
+    const TriangleMesh mesh = test::cube(1, 10);
+    SourceSet sources;
+    for (int i = 0; i < 40; ++i) {
+      const SurfacePoint a = test::random_surface_point(rng, mesh);
+      SurfacePoint b = test::random_surface_point(rng, mesh);
+      b.face = a.face;
+      b.barycentric = 0.7 * a.barycentric + 0.3 * b.barycentric;
+      const SurfacePoint segment[] = {a, b};
+      sources.add_polyline(mesh, segment, false);
+    }
+    expect_consistent(contour_set(mesh, ExactField::compute(mesh, sources), steps(0.3, 0.25, 12)));
   }
 }
 

@@ -66,6 +66,16 @@ TEST_F(JobFile, PathsAreRelativeToTheJobFile) {
   EXPECT_NE(elsewhere.find("\"polyline:../../sub/line.csv\""), std::string::npos) << elsewhere;
 }
 
+TEST_F(JobFile, PathsAreRelativeToAFolderThatDoesNotExistYet) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  Job job;
+  job.mesh = "part.stl";
+  const std::string text = job_yaml(job, "not/yet/there");
+  fs::current_path(before);
+  EXPECT_NE(text.find("\"../../../part.stl\""), std::string::npos) << text;
+}
+
 Job random_job(std::mt19937_64& rng, const fs::path& folder) {
   const auto number = [&] { return std::exp(std::uniform_real_distribution<double>(-20, 20)(rng)); };
   const auto pick = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(rng); };

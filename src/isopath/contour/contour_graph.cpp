@@ -63,6 +63,8 @@ class GraphBuilder {
     graph_.parents[upper].push_back(lower);
   }
 
+  Index level_of(Index contour) const { return cut_.pieces[chains_.some_piece_of[contour]].level; }
+
   void link_component(std::span<const Member> lower, std::span<const Member> upper) {
     const bool certain = lower.size() <= 1 || upper.size() <= 1;
     for (const Member& u : upper) {
@@ -70,6 +72,8 @@ class GraphBuilder {
       if (!certain) met = contours_met_below(u.second, u.first);
       for (const Member& l : lower) {
         // Without any verdict every neighbour in the band stays possible.
+        // Where contours of several levels touch, their bands run together; neighbours are still one level apart.
+        if (level_of(u.second) != level_of(l.second) + 1) continue;
         if (met.empty() || std::binary_search(met.begin(), met.end(), l.second)) link(l.second, u.second);
       }
     }
@@ -78,7 +82,7 @@ class GraphBuilder {
   /// The contours one level down, on the same component, that the ways down from a contour lead to.
   std::vector<Index> contours_met_below(Index contour, Index component) {
     std::vector<Index> met;
-    const Index level = cut_.pieces[chains_.some_piece_of[contour]].level - 1;
+    const Index level = level_of(contour) - 1;
     const auto& points = chains_.contours[contour].points;
     const std::size_t stride = (points.size() + most_descents - 1) / most_descents;
     for (std::size_t i = 0; i < points.size(); i += stride) {

@@ -21,8 +21,9 @@ fs::path resolved(const fs::path& path, const fs::path& folder) {
 
 /// The path as seen from `folder`. Symbolic links are followed first, since `..` would step out of their target.
 std::string seen_from(const fs::path& path, const fs::path& folder) {
-  const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
-  return fs::relative(fs::weakly_canonical(path), from).generic_string();
+  // Absolute first: a relative folder that does not exist yet stays relative, and nothing is relative to it.
+  const fs::path from = fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
+  return fs::relative(fs::weakly_canonical(fs::absolute(path)), from).generic_string();
 }
 
 AxisMode axis_mode_of(const std::string& name) {
