@@ -28,18 +28,29 @@ if(ISOPATH_SANITIZE)
   target_link_options(isopath_flags INTERFACE -fsanitize=${ISOPATH_SANITIZE})
 endif()
 
-# One precompiled header for all layers: the standard library, Eigen and fmt.
+# isopath_use_pch(target [NAME pch] [HEADERS ...] [LINKS ...]): the precompiled header <pch>, made on first use from the
+# standard library, Eigen and fmt, and from HEADERS, for which it links LINKS. All layers share the one without a NAME.
 function(isopath_use_pch target)
   if(NOT ISOPATH_PCH)
     return()
   endif()
-  if(NOT TARGET isopath_pch)
-    file(WRITE ${CMAKE_BINARY_DIR}/isopath_pch.cpp "")
-    add_library(isopath_pch OBJECT ${CMAKE_BINARY_DIR}/isopath_pch.cpp)
-    target_link_libraries(isopath_pch PRIVATE isopath_flags Eigen3::Eigen fmt::fmt)
-    target_precompile_headers(isopath_pch PRIVATE ${CMAKE_SOURCE_DIR}/cmake/pch.h)
+  cmake_parse_arguments(PCH "" "NAME" "HEADERS;LINKS" ${ARGN})
+  if(NOT PCH_NAME)
+    set(PCH_NAME isopath_pch)
   endif()
-  target_precompile_headers(${target} REUSE_FROM isopath_pch)
+  if(NOT TARGET ${PCH_NAME})
+    file(WRITE ${CMAKE_BINARY_DIR}/${PCH_NAME}.cpp "")
+    add_library(${PCH_NAME} OBJECT ${CMAKE_BINARY_DIR}/${PCH_NAME}.cpp)
+    target_link_libraries(${PCH_NAME} PRIVATE isopath_flags Eigen3::Eigen fmt::fmt ${PCH_LINKS})
+    target_compile_options(${PCH_NAME} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS>)
+    target_precompile_headers(${PCH_NAME} PRIVATE ${CMAKE_SOURCE_DIR}/cmake/pch.h ${PCH_HEADERS})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${PCH_NAME})
+endfunction()
+
+# For programs that compile long and run short, where optimised argument parsing and test cases gain nobody anything.
+function(isopath_compile_fast target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # isopath_layer(name LINKS ... [PRIVATE ...]): the static library of src/isopath/<name>.

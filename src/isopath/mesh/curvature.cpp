@@ -3,8 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -86,22 +86,24 @@ struct Quadratic {
 };
 
 /// Fits the points (x, y, z) by weighted least squares, weight 1 / distance. The axes of x and y are those of the
-/// points' spread; dividing by it makes the problem well conditioned for any aspect ratio.
+/// points' spread; dividing by it makes the problem well conditioned for any aspect ratio, so that the normal equations
+/// serve. Terms that the points leave open vanish.
 Quadratic fit(const std::vector<Vec3>& points, const Vec2& spread) {
-  Eigen::Matrix<double, Eigen::Dynamic, 5> terms(points.size(), 5);
-  Eigen::VectorXd heights(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double x = points[i].x() / spread.x();
-    const double y = points[i].y() / spread.y();
-    const double weight = 1 / std::max(std::hypot(x, y), 1e-3);
-    terms.row(i) << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
-    terms.row(i) *= weight;
-    heights[i] = weight * points[i].z();
+  using Vector5 = Eigen::Matrix<double, 5, 1>;
+  Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+  Vector5 right = Vector5::Zero();
+  for (const Vec3& p : points) {
+    const double x = p.x() / spread.x();
+    const double y = p.y() / spread.y();
+    const double distance = std::max(std::hypot(x, y), 1e-3);
+    const Vector5 terms{x, y, 0.5 * x * x, x * y, 0.5 * y * y};
+    const Vector5 weighted = terms / (distance * distance);
+    normal += terms * weighted.transpose();
+    right += p.z() * weighted;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 5>> solver;
-  solver.setThreshold(1e-8);
-  solver.compute(terms);
-  const Eigen::Matrix<double, 5, 1> c = solver.solve(heights);
+  // A trace of regularisation keeps the terms small that the points leave open.
+  normal.diagonal().array() += 1e-11 * normal.trace();
+  const Vector5 c = normal.ldlt().solve(right);
   Quadratic q;
   q.gradient = {c[0] / spread.x(), c[1] / spread.y()};
   q.hessian(0, 0) = c[2] / (spread.x() * spread.x());
@@ -122,7 +124,8 @@ PrincipalCurvatures curvatures_at(const TriangleMesh& mesh, const SmoothNormals&
     points.emplace_back(d.dot(ex), d.dot(ey), d.dot(n));
     spread += points.back().head<2>() * points.back().head<2>().transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(spread);
+  Eigen::SelfAdjointEigenSolver<Matrix2> axes;
+  axes.computeDirect(spread);
   const double wide = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
   if (!(wide > 0)) return {0, 0, ex, ey};
   // The spread is a sum and not a mean: only the ratio of its axes matters to the fit. Points on one line leave the
@@ -131,12 +134,18 @@ PrincipalCurvatures curvatures_at(const TriangleMesh& mesh, const SmoothNormals&
   for (Vec3& p : points) p.head<2>() = Vec2(axes.eigenvectors().transpose() * p.head<2>());
   const Quadratic q = fit(points, {narrow, wide});
 
-  // The shape operator of the graph, from its two fundamental forms.
-  const Matrix2 first = Matrix2::Identity() + q.gradient * q.gradient.transpose();
-  const Matrix2 second = q.hessian / std::sqrt(1 + q.gradient.squaredNorm());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix2> shape(second, first);
+  // The shape operator of the graph, from its two fundamental forms, in an orthonormal basis of the tangent plane: the
+  // direction of the gradient and the one across it. Its columns are their coordinates in the axes.
+  const double slope = q.gradient.norm();
+  const Vec2 uphill = slope > 0 ? Vec2(q.gradient / slope) : Vec2(1, 0);
+  const double stretch = std::sqrt(1 + slope * slope);
+  Matrix2 tangent;
+  tangent << uphill.x() / stretch, -uphill.y(), uphill.y() / stretch, uphill.x();
+  const Matrix2 second = tangent.transpose() * q.hessian * tangent / stretch;
+  Eigen::SelfAdjointEigenSolver<Matrix2> shape;
+  shape.computeDirect(second);
   const auto direction = [&](int i) {
-    const Vec2 in_axes = shape.eigenvectors().col(i);
+    const Vec2 in_axes = tangent * shape.eigenvectors().col(i);
     const Vec2 plane = axes.eigenvectors() * in_axes;
     return Vec3((plane.x() * ex + plane.y() * ey + q.gradient.dot(in_axes) * n).normalized());
   };

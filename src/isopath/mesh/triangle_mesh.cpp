@@ -52,33 +52,42 @@ TriangleMesh::TriangleMesh(TriangleSoup soup) : soup_(std::move(soup)) {
 }
 
 void TriangleMesh::pair_halfedges() {
-  // Counting sort of the half-edges by their lower vertex, then a short search among those of one vertex.
+  // Counting sort of the half-edges by their lower vertex, then a short sort among those of one vertex. What a half-edge
+  // is sorted by and compared for travels with it: looking it up again misses the cache when the triangles are shuffled.
+  struct Entry {
+    Index upper;
+    Index halfedge;
+    bool ascending;  ///< from the lower vertex to the upper
+  };
   const Index n = n_halfedges();
   twin_.assign(n, no_index);
   std::vector<Index> start(n_vertices() + 1, 0);
-  const auto lower = [&](Index h) { return std::min(from(h), to(h)); };
-  for (Index h = 0; h < n; ++h) ++start[lower(h) + 1];
+  for (Index h = 0; h < n; ++h) ++start[std::min(from(h), to(h)) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<Index> sorted(n);
+  std::vector<Entry> sorted(n);
   std::vector<Index> cursor(start.begin(), start.end() - 1);
-  for (Index h = 0; h < n; ++h) sorted[cursor[lower(h)]++] = h;
+  for (Index h = 0; h < n; ++h) {
+    const Index lower = std::min(from(h), to(h));
+    const Index upper = std::max(from(h), to(h));
+    sorted[cursor[lower]++] = {upper, h, from(h) == lower};
+  }
 
   for (Index v = 0; v < n_vertices(); ++v) {
     const std::span bucket(sorted.data() + start[v], sorted.data() + start[v + 1]);
-    const auto upper = [&](Index h) { return std::max(from(h), to(h)); };
-    std::sort(bucket.begin(), bucket.end(),
-              [&](Index a, Index b) { return std::pair(upper(a), a) < std::pair(upper(b), b); });
+    std::sort(bucket.begin(), bucket.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(a.upper, a.halfedge) < std::pair(b.upper, b.halfedge);
+    });
     for (std::size_t i = 0; i < bucket.size();) {
       std::size_t j = i + 1;
-      while (j < bucket.size() && upper(bucket[j]) == upper(bucket[i])) ++j;
-      const Index h = bucket[i];
+      while (j < bucket.size() && bucket[j].upper == bucket[i].upper) ++j;
       if (j - i > 2) {
-        reject("edge has more than two triangles", fmt::format("edge {} {}", v, upper(h)),
+        reject("edge has more than two triangles", fmt::format("edge {} {}", v, bucket[i].upper),
                fmt::format("{} triangles", j - i));
       }
       if (j - i == 2) {
-        const Index g = bucket[i + 1];
-        if (from(h) == from(g)) {
+        const Index h = bucket[i].halfedge;
+        const Index g = bucket[i + 1].halfedge;
+        if (bucket[i].ascending == bucket[i + 1].ascending) {
           reject("two neighbouring triangles are oriented oppositely",
                  fmt::format("triangles {} and {}", face_of(h), face_of(g)));
         }
