@@ -52,8 +52,9 @@ TriangleMesh::TriangleMesh(TriangleSoup soup) : soup_(std::move(soup)) {
 }
 
 void TriangleMesh::pair_halfedges() {
-  // Counting sort of the half-edges by their lower vertex, then a short sort among those of one vertex. What a half-edge
-  // is sorted by and compared for travels with it: looking it up again misses the cache when the triangles are shuffled.
+  // Counting sort of the half-edges by their lower vertex, then a short sort among those of one vertex. What a
+  // half-edge is sorted by and compared for travels with it: looking it up again misses the cache when the triangles
+  // are shuffled.
   struct Entry {
     Index upper;
     Index halfedge;
