@@ -41,7 +41,12 @@ double SlowExact::Beam::passage_to(const Vec2& at) const {
 }
 
 SlowExact::SlowExact(const TriangleMesh& mesh, std::span<const SourceElement> sources)
+    : SlowExact(mesh, mesh.edge_lengths(), sources) {}
+
+SlowExact::SlowExact(const TriangleMesh& mesh, std::span<const double> edge_lengths,
+                     std::span<const SourceElement> sources)
     : mesh_(mesh),
+      edge_length_(edge_lengths.begin(), edge_lengths.end()),
       bends_(mesh.n_vertices(), 0),
       vertex_(mesh.n_vertices(), infinity),
       beams_of_face_(mesh.n_faces()),
@@ -59,9 +64,9 @@ SlowExact::SlowExact(const TriangleMesh& mesh, std::span<const SourceElement> so
 
 /// Corners of the half-edge's face, in its frame: start, end, opposite.
 std::array<Vec2, 3> SlowExact::corners_from(Index halfedge) const {
-  const double base = mesh_.edge_length(mesh_.edge_of(halfedge));
-  const double right = mesh_.edge_length(mesh_.edge_of(TriangleMesh::next(halfedge)));
-  const double left = mesh_.edge_length(mesh_.edge_of(TriangleMesh::prev(halfedge)));
+  const double base = length_of(halfedge);
+  const double right = length_of(TriangleMesh::next(halfedge));
+  const double left = length_of(TriangleMesh::prev(halfedge));
   const double x = 0.5 * (base + (left - right) * (left + right) / base);
   return {Vec2(0, 0), Vec2(base, 0), Vec2(x, 2 * area_of_sides(base, right, left) / base)};
 }
@@ -76,7 +81,7 @@ Vec2 SlowExact::place(const SurfacePoint& point, Index halfedge) const {
 
 /// Shortest bent way from the beam's origin to a point of the face it enters, through the beam's part of the edge.
 double SlowExact::shortest_through(const Beam& beam, const Vec2& at) const {
-  const double length = mesh_.edge_length(mesh_.edge_of(beam.halfedge));
+  const double length = length_of(beam.halfedge);
   const double x = std::clamp(beam.passage_to(at), beam.low * length, beam.high * length);
   return beam.length_to({x, 0}) + (at - Vec2(x, 0)).norm();
 }
@@ -135,7 +140,7 @@ void SlowExact::add_in_face(const SurfacePoint& a, const SurfacePoint& b) {
     if (unit.x() == 0) continue;
     // The strip of perpendiculars that go down to the edge; x where their feet are the segment's ends.
     const Vec2 down = unit.x() > 0 ? Vec2(unit.y(), -unit.x()) : Vec2(-unit.y(), unit.x());
-    const double length = mesh_.edge_length(mesh_.edge_of(h));
+    const double length = length_of(h);
     const double x1 = start.x() + start.y() * unit.y() / unit.x();
     const double x2 = end.x() + end.y() * unit.y() / unit.x();
     leave(h, {.low = std::clamp(std::min(x1, x2) / length, 0.0, 1.0),
@@ -148,11 +153,11 @@ void SlowExact::add_in_face(const SurfacePoint& a, const SurfacePoint& b) {
 void SlowExact::emit_from_vertex(Index vertex, double sigma) {
   for (Index h = 0; h < mesh_.n_halfedges(); ++h) {
     if (mesh_.from(h) == vertex) {
-      relax(mesh_.to(h), sigma + mesh_.edge_length(mesh_.edge_of(h)));
+      relax(mesh_.to(h), sigma + length_of(h));
       const Index opposite = TriangleMesh::next(h);
       leave(opposite, {.low = 0, .high = 1, .from = corners_from(opposite)[2], .sigma = sigma});
     }
-    if (mesh_.to(h) == vertex) relax(mesh_.from(h), sigma + mesh_.edge_length(mesh_.edge_of(h)));
+    if (mesh_.to(h) == vertex) relax(mesh_.from(h), sigma + length_of(h));
   }
 }
 
@@ -168,7 +173,7 @@ void SlowExact::leave(Index halfedge, Beam beam) {
   const Index twin = mesh_.twin(halfedge);
   if (twin == no_index || beam.high - beam.low < 1e-15) return;
   if (beam.is_parallel() ? beam.along.y() >= 0 : beam.from.y() <= 0) return;
-  const double length = mesh_.edge_length(mesh_.edge_of(halfedge));
+  const double length = length_of(halfedge);
   beam.halfedge = twin;
   beam.from = Vec2(length, 0) - beam.from;
   beam.along = -beam.along;

@@ -18,6 +18,8 @@ namespace isopath::test {
 class SlowExact {
  public:
   SlowExact(const TriangleMesh& mesh, std::span<const SourceElement> sources);
+  /// In the metric of these lengths, one for each edge.
+  SlowExact(const TriangleMesh& mesh, std::span<const double> edge_lengths, std::span<const SourceElement> sources);
 
   /// Infinity where no source reaches.
   const std::vector<double>& vertex_distances() const { return vertex_; }
@@ -68,7 +70,10 @@ class SlowExact {
   void follow(const Beam& beam);
   void run();
 
+  double length_of(Index halfedge) const { return edge_length_[mesh_.edge_of(halfedge)]; }
+
   const TriangleMesh& mesh_;
+  std::vector<double> edge_length_;
   std::vector<char> bends_;
   std::vector<double> vertex_;
   std::vector<std::vector<Beam>> beams_of_face_;

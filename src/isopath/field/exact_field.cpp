@@ -74,13 +74,6 @@ void index_sources(ExactFieldData& data) {
   }
 }
 
-Vec3 in_space(const TriangleMesh& mesh, Index face, const Vec2& v) {
-  const auto& [a, b, c] = mesh.triangle(face);
-  const Vec3 x = (mesh.position(b) - mesh.position(a)).stableNormalized();
-  const Vec3 y = mesh.face_normal(face).cross(x);
-  return v.x() * x + v.y() * y;
-}
-
 /// The convex cone that some directions span, while they lie in one open half-plane.
 class DirectionCone {
  public:
@@ -105,16 +98,16 @@ class DirectionCone {
 };
 
 /// Merging is to last until the farthest point; paths along edges tell about how far that is.
-MergeLimits merge_limits(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
-                         Progress& progress) {
-  MergeLimits limits{.accuracy = options.accuracy, .size = mesh.size()};
+MergeLimits merge_limits(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                         const ExactFieldOptions& options, Progress& progress) {
+  MergeLimits limits{.accuracy = options.accuracy, .size = geometry.size()};
   if (options.accuracy == 0) return limits;
   double farthest = 0;
   for (const double d : graph_distances(mesh, sources, {}, progress)) {
     if (d < infinity) farthest = std::max(farthest, d);
   }
   // surfaces are crossed a little faster than along edges
-  limits.reach = std::min(options.stop_distance, 0.85 * farthest);
+  limits.reach = std::min(options.stop_distance, 0.85 * farthest * geometry.max_stretch());
   return limits;
 }
 
@@ -135,11 +128,25 @@ ExactField::~ExactField() = default;
 
 ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
                                Progress& progress) {
+  return run(std::make_unique<ExactFieldData>(mesh, IntrinsicGeometry(mesh), sources), mesh, options, progress);
+}
+
+ExactField ExactField::compute(const TriangleMesh& mesh, IntrinsicGeometry metric, const SourceSet& sources,
+                               const ExactFieldOptions& options, Progress& progress) {
+  std::vector<double> lengths(mesh.n_edges());
+  for (Index e = 0; e < mesh.n_edges(); ++e) lengths[e] = metric.length(mesh.halfedge_of(e));
+  const TriangleMesh warped = mesh.with_edge_lengths(std::move(lengths));  // the propagation reads no positions
+  return run(std::make_unique<ExactFieldData>(mesh, std::move(metric), sources), warped, options, progress);
+}
+
+ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const TriangleMesh& warped,
+                           const ExactFieldOptions& options, Progress& progress) {
+  const SourceSet& sources = data->sources;
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   options.validate();
-  auto data = std::make_unique<ExactFieldData>(mesh, sources);
   index_sources(*data);
-  WindowPropagation propagation(mesh, data->geometry, sources, merge_limits(mesh, sources, options, progress));
+  WindowPropagation propagation(warped, data->geometry, sources,
+                                merge_limits(data->mesh, data->geometry, sources, options, progress));
   propagation.run(options.stop_distance, progress);
   data->distance = std::move(propagation.vertex_distances());
   data->root = std::move(propagation.vertex_roots());
@@ -153,6 +160,7 @@ const TriangleMesh& ExactField::mesh() const { return data_->mesh; }
 std::span<const double> ExactField::vertex_distances() const { return data_->distance; }
 std::size_t ExactField::windows_kept() const { return data_->windows.size(); }
 std::size_t ExactField::windows_propagated() const { return data_->propagated; }
+double ExactField::max_slope() const { return data_->geometry.max_stretch(); }
 double ExactField::value_at_vertex(Index vertex) const { return data_->distance[vertex]; }
 double ExactField::value(const SurfacePoint& point) const { return nearest(point).distance; }
 
@@ -168,7 +176,8 @@ ExactField::Nearest ExactField::nearest(const SurfacePoint& point) const {
   const Support support = support_of(data_->mesh, point);
   const WayBack way = best_way_back(*data_, point.face, point.barycentric);
   Nearest result{way.distance, way.root};
-  if (way.towards != Vec2::Zero()) result.towards_source = in_space(data_->mesh, point.face, way.towards.normalized());
+  if (way.towards != Vec2::Zero())
+    result.towards_source = data_->geometry.direction_in_space(data_->mesh, point.face, way.towards.normalized());
   if (support.kind == Support::Kind::vertex) {
     result.distance = data_->distance[support.index];
     result.root = data_->root[support.index];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isopath/core/progress.h"
+#include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/source.h"
 #include "isopath/field/surface_function.h"
 
@@ -33,6 +34,10 @@ class ExactField final : public SurfaceFunction {
   static ExactField compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options = {},
                             Progress& progress = Progress::none());
 
+  /// The same in a metric (paper ch. 10): distances are lengths in it, and only directions still mean space.
+  static ExactField compute(const TriangleMesh& mesh, IntrinsicGeometry metric, const SourceSet& sources,
+                            const ExactFieldOptions& options = {}, Progress& progress = Progress::none());
+
   ExactField(ExactField&&) noexcept;
   ExactField& operator=(ExactField&&) noexcept;
   ~ExactField() override;
@@ -48,7 +53,7 @@ class ExactField final : public SurfaceFunction {
     double distance = infinity;
     Index root = no_index;
     Vec3 towards_source =
-        Vec3::Zero();  ///< unit vector in the face along which the shortest path leaves; zero on a source
+        Vec3::Zero();  ///< unit vector in space along which the shortest path leaves in the face; zero on a source
   };
   Nearest nearest(const SurfacePoint& point) const;
 
@@ -61,15 +66,19 @@ class ExactField final : public SurfaceFunction {
 
   double value_at_vertex(Index vertex) const override;
   double value(const SurfacePoint& point) const override;
+  /// In a metric the ascent is the steepest there, against the shortest path, and not the steepest in space.
   Slope slope(const SurfacePoint& point) const override;
   void edge_crossings(Index edge, double level, std::vector<double>& parameters) const override;
   bool linear_in_faces() const override { return false; }
   bool monotone_in_face(Index face) const override;
-  double max_slope() const override { return 1; }
+  double max_slope() const override;
   double lower_bound() const override { return 0; }
 
  private:
   explicit ExactField(std::unique_ptr<ExactFieldData> data);
+  /// `warped` has the edge lengths of the data's geometry.
+  static ExactField run(std::unique_ptr<ExactFieldData> data, const TriangleMesh& warped,
+                        const ExactFieldOptions& options, Progress& progress);
   std::unique_ptr<ExactFieldData> data_;
 };
 

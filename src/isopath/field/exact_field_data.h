@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "isopath/field/intrinsic_geometry.h"
@@ -12,7 +13,8 @@ namespace isopath {
 /// What an exact field keeps: the windows of every edge side by side, vertex distances and roots, and which sources lie
 /// in a face.
 struct ExactFieldData {
-  ExactFieldData(const TriangleMesh& m, const SourceSet& s) : mesh(m), geometry(m), sources(s) {}
+  ExactFieldData(const TriangleMesh& m, IntrinsicGeometry g, const SourceSet& s)
+      : mesh(m), geometry(std::move(g)), sources(s) {}
 
   /// Ids of an edge's windows: from first_window[edge] up to first_window[edge + 1].
   template <class Visit>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "isopath/core/geometry.h"
@@ -10,21 +11,42 @@ namespace isopath {
 /// Every triangle laid out in the plane: all that distances on a surface need to know of its shape.
 ///
 /// The frame of a half-edge has its origin at the tail, x along the half-edge, and the half-edge's face at y > 0.
+///
+/// The lengths may be those of the edges in space, or those of another metric (paper ch. 10): then each triangle is
+/// warped, the map from its plane in space to its layout is affine, and barycentric coordinates mean the same in both.
 class IntrinsicGeometry {
  public:
   /// The shape that the vertex positions give.
   explicit IntrinsicGeometry(const TriangleMesh& mesh);
+
+  /// The shape that a metric gives, by one length in mm for each edge of the mesh. Triangles may be flat within
+  /// rounding. Throws Error(bad_usage) when the number of lengths is not that of the edges, Error(bad_input) that names
+  /// the edge when a length is not finite and positive, or the face when its lengths break the triangle inequality.
+  IntrinsicGeometry(const TriangleMesh& mesh, std::span<const double> edge_lengths);
 
   double length(Index halfedge) const { return length_[halfedge]; }
   /// The corner opposite the half-edge, in the half-edge's frame.
   const Vec2& apex(Index halfedge) const { return apex_[halfedge]; }
   /// Interior angle of the half-edge's face at its tail, in [0, π].
   double angle_at_tail(Index halfedge) const;
+  double face_area(Index face) const { return 0.5 * length_[3 * face] * apex_[3 * face].y(); }
 
   /// A point given by barycentric coordinates of the half-edge's face, in the half-edge's frame.
   Vec2 in_frame(Index halfedge, const Vec3& barycentric) const;
 
+  /// The direction in space, of unit length, of a vector in the frame of half-edge 3·face: the layout is mapped
+  /// affinely, so that a straight way in it is the same way in space. Zero for a zero vector.
+  Vec3 direction_in_space(const TriangleMesh& mesh, Index face, const Vec2& v) const;
+
+  /// The largest factor, over all faces and directions, by which a length exceeds that in space; 1 without a metric.
+  double max_stretch() const { return max_stretch_; }
+  /// The model's size as tolerances need it: no shorter than any straight way.
+  double size() const { return size_; }
+
  private:
+  bool is_metric_ = false;
+  double max_stretch_ = 1;
+  double size_ = 0;
   std::vector<double> length_;
   std::vector<Vec2> apex_;
 };

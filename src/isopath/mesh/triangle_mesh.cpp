@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "isopath/core/error.h"
 
@@ -174,6 +175,16 @@ void TriangleMesh::label_components() {
     }
     ++n_components_;
   }
+}
+
+TriangleMesh TriangleMesh::with_edge_lengths(std::vector<double> lengths) const {
+  if (static_cast<Index>(lengths.size()) != n_edges()) {
+    throw Error(ErrorCode::bad_usage, "there must be one length for each edge of the mesh",
+                {.element = "edge lengths", .value = fmt::format("{} lengths, {} edges", lengths.size(), n_edges())});
+  }
+  TriangleMesh copy = *this;
+  copy.edge_length_ = std::move(lengths);
+  return copy;
 }
 
 Vec3 TriangleMesh::face_normal(Index face) const {
