@@ -28,6 +28,7 @@ struct PlanArguments {
   std::optional<std::string> pattern;
   std::vector<double> direction;
   std::optional<double> spacing;
+  std::optional<double> scallop;
   std::optional<double> clearance;
   std::optional<std::string> process;
   std::optional<std::string> tool;
@@ -81,7 +82,10 @@ Job job_of(const PlanArguments& given) {
   if (!given.sources.empty()) job.sources = parse_sources(given.sources);
   if (given.pattern) job.pattern = pattern_of(*given.pattern);
   if (!given.direction.empty()) job.planar_direction = Vec3(given.direction[0], given.direction[1], given.direction[2]);
+  // each gives the distance between passes: what is given last, here, replaces what the file gives
+  if (given.spacing || given.scallop) job.spacing = job.scallop = 0;
   replace(job.spacing, given.spacing);
+  replace(job.scallop, given.scallop);
   replace(job.clearance, given.clearance);
   apply_tool(given, job.tool);
   if (!given.formats.empty()) job.programs = given.formats;
@@ -95,11 +99,15 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
   const GapReport& gap = result.gap;
   const double w = result.spacing;
   std::string text = fmt::format("{} path, {:.4g} mm between passes\n", name_of(std::optional(result.pattern)), w);
-  text += fmt::format("  covering length  {:.5g} mm ({:.3f} of area / spacing)\n", f.cover_length,
-                      f.cover_length * w / gap.area);
+  text += fmt::format("  covering length  {:.5g} mm ({:.3f} of area / spacing)\n", f.cover_length, result.length_ratio);
   text += fmt::format("  covered          {:.2f} % of {:.5g} mm²\n", 100 * gap.covered_fraction, gap.area);
   text += fmt::format("  gap              {:.3f} × spacing at most, {:.3f} for 99 % of the area\n", gap.max / w,
                       gap.p99 / w);
+  if (result.scallop) {
+    const ScallopReport& cusps = result.scallop->measured;
+    text += fmt::format("  scallop          {:.4g} mm wanted; mean {:.4g}, 99 % below {:.4g}, highest {:.4g}\n",
+                        result.job.scallop, cusps.mean, cusps.p99, cusps.max);
+  }
   text += fmt::format("  pieces           {}, lifts {}, links {:.4g} mm\n", f.pieces, f.lifts, f.links_length);
   text += fmt::format("results in {}{}\n", folder, result.job.report ? "; look at its report.html" : "");
   return text;
@@ -132,6 +140,11 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--spacing", given.spacing, "Distance between neighbouring passes, mm")
       ->check(number_above_0())
       ->default_str("1/60 of the part's size");
+  command
+      .add_option("--scallop", given.scallop,
+                  "Height of the cusps that the ball leaves everywhere, mm, instead of a spacing: passes come closer\n"
+                  "over ridges and lie farther apart in hollows")
+      ->check(number_above_0());
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
       ->check(number_above_0())
       ->default_str("the spacing");
@@ -195,6 +208,7 @@ void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
       "Examples:\n"
       "  isopath plan blade.off --source boundary:0 --spacing 0.5 -o out\n"
       "  isopath plan door.stl --unit m --spacing 40 --process spray --stand-off 200 -o door\n"
+      "  isopath plan die.stl --scallop 0.01 --tool ball:8 -o fine\n"
       "  isopath plan die.stl --pattern planar --direction 0,1,0 --axis 0,0,1 --post gcode3 -o die\n"
       "  isopath plan out/job.yaml --spacing 1 -o coarser\n\n"
       "The flags are shorthands for the job file and override it. The job of a run is written to\n"

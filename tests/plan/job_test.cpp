@@ -137,7 +137,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   const auto expect_all = [](const std::string& message, const std::vector<const char*>& parts) {
     for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
   };
-  expect_all(complaint("spacings: 3\n"), {"line 2", "spacings", "unknown key", "spacing, clearance"});
+  expect_all(complaint("spacings: 3\n"), {"line 2", "spacings", "unknown key", "spacing, scallop, clearance"});
   expect_all(complaint("spacing: wide\n"), {"line 2", "spacing", "'wide'", "number"});
   expect_all(complaint("spacing: -1\n"), {"line 2", "spacing", "-1", "at least 0"});
   expect_all(complaint("spacing: [1]\n"), {"line 2", "spacing", "a list of 1", "number"});

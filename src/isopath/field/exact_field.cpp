@@ -157,6 +157,7 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const TriangleM
 }
 
 const TriangleMesh& ExactField::mesh() const { return data_->mesh; }
+const IntrinsicGeometry& ExactField::geometry() const { return data_->geometry; }
 std::span<const double> ExactField::vertex_distances() const { return data_->distance; }
 std::size_t ExactField::windows_kept() const { return data_->windows.size(); }
 std::size_t ExactField::windows_propagated() const { return data_->propagated; }

@@ -43,6 +43,8 @@ class ExactField final : public SurfaceFunction {
   ~ExactField() override;
 
   const TriangleMesh& mesh() const;
+  /// What lengths are measured in.
+  const IntrinsicGeometry& geometry() const;
   /// Distance at every vertex in the mesh's order; infinity where no source reaches.
   std::span<const double> vertex_distances() const;
   /// The largest vertex distance that is finite.

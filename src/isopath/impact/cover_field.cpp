@@ -5,7 +5,8 @@
 
 namespace isopath {
 
-CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress) {
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
+                               const IntrinsicGeometry* metric) {
   SourceSet source;
   std::vector<Index> curve_point;
   std::vector<SurfacePoint> stretch;
@@ -28,7 +29,10 @@ CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curv
   }
   flush();
   if (source.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing");
-  return {ExactField::compute(mesh, source, {.accuracy = cover_accuracy * spacing}, progress), std::move(curve_point)};
+  const ExactFieldOptions options{.accuracy = cover_accuracy * spacing};
+  return {metric ? ExactField::compute(mesh, *metric, source, options, progress)
+                 : ExactField::compute(mesh, source, options, progress),
+          std::move(curve_point)};
 }
 
 }  // namespace isopath

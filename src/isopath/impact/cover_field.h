@@ -17,8 +17,9 @@ struct CoverField {
 /// Bound on the error of these distances, in spacings: no gap is off by more than twice this.
 inline constexpr double cover_accuracy = 1e-4;
 
-/// The distance with `cover_accuracy`. Throws Error(no_plan) when the curve covers nothing, Error(cancelled) on
-/// request.
-CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress);
+/// The distance with `cover_accuracy`, in space or in a metric. Throws Error(no_plan) when the curve covers nothing,
+/// Error(cancelled) on request.
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
+                               const IntrinsicGeometry* metric = nullptr);
 
 }  // namespace isopath

@@ -27,7 +27,7 @@ struct Sample {
 void sample_face(const ExactField& field, Index face, double step, std::vector<Sample>& samples) {
   const TriangleMesh& mesh = field.mesh();
   double longest = 0;
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) longest = std::max(longest, mesh.edge_length(mesh.edge_of(h)));
+  for (Index h = 3 * face; h < 3 * face + 3; ++h) longest = std::max(longest, field.geometry().length(h));
   const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, most_divisions));
   const double area = mesh.face_area(face) / (n * n);
   for (int i = 0; i < n; ++i) {
@@ -59,14 +59,15 @@ std::vector<Sample> sample_surface(const ExactField& field, double step, const P
 
 }  // namespace
 
-GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress) {
+GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
+                      const IntrinsicGeometry* metric) {
   if (!(spacing > 0 && std::isfinite(spacing))) {
     throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
                 {.element = "spacing", .value = fmt::format("{}", spacing)});
   }
   progress.stage("gap");
   GapReport report;
-  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress);
+  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress, metric);
   const ExactField& field = cover.field;
   for (const double d : field.vertex_distances()) report.vertex_gap.push_back(2 * d);
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "isopath/core/progress.h"
+#include "isopath/field/intrinsic_geometry.h"
 #include "isopath/impact/impact_curve.h"
 
 namespace isopath {
@@ -10,6 +11,7 @@ namespace isopath {
 /// The proof of coverage: how wide the gaps between neighbouring passes are, everywhere on the surface.
 /// The gap at a point is twice its geodesic distance from the covering part of the curve, known to 2e-4 spacings (twice
 /// `cover_accuracy`). Lengths in mm.
+/// In a metric, distances and the spacing are lengths in it; areas stay those in space.
 /// Where a part of the surface is not reached its gap is infinite, and so are max, mean and cv.
 struct GapReport {
   double max = 0;   ///< of the vertices and of samples a sixth of a spacing apart (on very large faces farther)
@@ -27,6 +29,6 @@ struct GapReport {
 /// Throws Error(bad_usage) for a spacing that is not positive, Error(no_plan) when the curve covers nothing,
 /// Error(cancelled) on request.
 GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing,
-                      Progress& progress = Progress::none());
+                      Progress& progress = Progress::none(), const IntrinsicGeometry* metric = nullptr);
 
 }  // namespace isopath

@@ -99,9 +99,9 @@ std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& fie
 }  // namespace
 
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, double spacing, ImpactCurve& curve,
-                    Progress& progress) {
+                    Progress& progress, const IntrinsicGeometry* metric) {
   const TriangleMesh& mesh = linker.mesh();
-  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress);
+  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress, metric);
   const DetourBuilder builder(mesh, normals, curve, cover);
   std::vector<Detour> detours;
   for (const Contour& contour : open_places(mesh, cover.field, spacing, progress)) {

@@ -98,7 +98,7 @@ class Planner {
     }
     plan.curve = assembly.take();
     progress_.stage("wide gaps");
-    close_wide_gaps(linker_, normals_, options_.spacing, plan.curve, progress_);
+    close_wide_gaps(linker_, normals_, options_.spacing, plan.curve, progress_, options_.metric);
     plan.contours = std::move(passes_.contours);
     return plan;
   }

@@ -39,6 +39,21 @@ Value value_named(const char* what, std::string_view name, const std::array<Valu
               {.element = field, .value = std::move(value), .advice = std::move(advice)});
 }
 
+void validate_scallop(const Job& job) {
+  const double height = job.scallop;
+  if (!(height >= 0) || height == infinity) refuse("scallop", fmt::format("{}, allowed is 0 or more", height));
+  if (height == 0) return;
+  if (job.spacing > 0) {
+    refuse("scallop", fmt::format("{} with a spacing of {}", height, job.spacing),
+           "the scallop's height gives the spacing: leave one of them out");
+  }
+  if (job.tool.process == Process::spray) refuse("scallop", fmt::format("{}", height), "a spray leaves no cusps");
+  if (!(height < 0.5 * job.tool.ball_diameter)) {
+    refuse("scallop", fmt::format("{}, the ball's radius is {}", height, 0.5 * job.tool.ball_diameter),
+           "give less than the radius");
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(LengthUnit unit) {
@@ -111,6 +126,7 @@ void Job::validate() const {
     refuse("planar_direction",
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
   }
+  validate_scallop(*this);
   for (const std::string& format : programs) check_program_format(format);
   tool.validate();
 }

@@ -27,8 +27,11 @@ struct Job {
   std::optional<Pattern> pattern = {};               ///< none: spiral where the isolines are closed, meander where open
   Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
-  double clearance = 0;                   ///< height of lifts above the surface; 0 takes the spacing
-  ToolOptions tool = {};                  ///< process, tool, feeds
+  /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
+  /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.
+  double scallop = 0;
+  double clearance = 0;   ///< height of lifts above the surface; 0 takes the spacing
+  ToolOptions tool = {};  ///< process, tool, feeds
   std::vector<std::string> programs =
       {};              ///< formats to write the program in, of `export_formats()`; none: the planner chooses
   bool report = true;  ///< write report.html

@@ -92,6 +92,7 @@ Job read_job(const fs::path& path) {
   fields.read_text("pattern", [&](const std::string& text) { job.pattern = pattern_of(text); });
   fields.read("planar_direction", job.planar_direction);
   fields.read("spacing", job.spacing, {.least = 0});
+  fields.read("scallop", job.scallop, {.least = 0});
   fields.read("clearance", job.clearance, {.least = 0});
   read_tool(fields.section("tool"), job.tool);
   fields.read_texts("programs", [&](const std::string& text) {
@@ -122,6 +123,7 @@ std::string job_yaml(const Job& job, const fs::path& folder) {
   line("pattern", name_of(job.pattern));
   line("planar_direction", vector_text(job.planar_direction));
   line("spacing", job.spacing);
+  line("scallop", job.scallop);
   line("clearance", job.clearance);
   text += tool_yaml(job.tool);
   line("programs", list_text(job.programs));

@@ -9,6 +9,22 @@
 #include "isopath/post/path_vtp.h"
 
 namespace isopath {
+namespace {
+
+nlohmann::ordered_json scallop_json(const PlanResult& result) {
+  const ScallopReport& measured = result.scallop->measured;
+  return {{"wanted", result.job.scallop},
+          {"min", measured.min},
+          {"mean", measured.mean},
+          {"p99", measured.p99},
+          {"max", measured.max},
+          {"open_share", measured.open_share},
+          {"clamped_fraction", result.scallop->clamped_fraction},
+          {"gouged_fraction", result.scallop->gouged_fraction}};
+}
+
+}  // namespace
+
 std::string summary_json(const PlanResult& result) {
   using Json = nlohmann::ordered_json;
   const PathFigures& figures = result.figures;
@@ -21,26 +37,27 @@ std::string summary_json(const PlanResult& result) {
     total += time.seconds;
   }
   times["total"] = total;
-  const Json summary = {{"area", gap.area},
-                        {"spacing", result.spacing},
-                        {"pattern", name_of(std::optional(result.pattern))},
-                        {"cover_length", figures.cover_length},
-                        {"length_ratio", figures.cover_length * result.spacing / gap.area},
-                        {"pieces", figures.pieces},
-                        {"lifts", figures.lifts},
-                        {"links_length", figures.links_length},
-                        {"gap",
-                         {{"max", over_spacing(gap.max)},
-                          {"p99", over_spacing(gap.p99)},
-                          {"mean", over_spacing(gap.mean)},
-                          {"cv", gap.cv}}},
-                        {"covered_fraction", gap.covered_fraction},
-                        {"min_radius", figures.min_radius},
-                        {"sharp_corners", figures.sharp_corners},
-                        {"path_time_s", result.tool.points.empty() ? 0 : result.tool.points.back().time},
-                        {"time_s", std::move(times)},
-                        {"peak_memory_mb", result.peak_memory_mb},
-                        {"warnings", result.warnings}};
+  Json summary = {{"area", gap.area},
+                  {"spacing", result.spacing},
+                  {"pattern", name_of(std::optional(result.pattern))},
+                  {"cover_length", figures.cover_length},
+                  {"length_ratio", result.length_ratio},
+                  {"pieces", figures.pieces},
+                  {"lifts", figures.lifts},
+                  {"links_length", figures.links_length},
+                  {"gap",
+                   {{"max", over_spacing(gap.max)},
+                    {"p99", over_spacing(gap.p99)},
+                    {"mean", over_spacing(gap.mean)},
+                    {"cv", gap.cv}}},
+                  {"covered_fraction", gap.covered_fraction},
+                  {"min_radius", figures.min_radius},
+                  {"sharp_corners", figures.sharp_corners},
+                  {"path_time_s", result.tool.points.empty() ? 0 : result.tool.points.back().time},
+                  {"time_s", std::move(times)},
+                  {"peak_memory_mb", result.peak_memory_mb},
+                  {"warnings", result.warnings}};
+  if (result.scallop) summary["scallop"] = scallop_json(result);
   return summary.dump(2) + "\n";
 }
 

@@ -22,7 +22,7 @@ ReportTable figures_table(const PlanResult& result) {
            {"spacing", text(w), "mm", "Wanted distance between neighbouring passes."},
            {"pattern", std::string(name_of(std::optional(result.pattern)))},
            {"covering length", text(f.cover_length), "mm"},
-           {"length ratio", text(f.cover_length * w / gap.area), "",
+           {"length ratio", text(result.length_ratio), "",
             "Covering length × spacing / area: 1 is the least that evenly spaced passes need."},
            {"links", text(f.links_length), "mm", "Moves on the surface between passes."},
            {"pieces", fmt::format("{}", f.pieces), "", "Stretches covered without leaving the surface."},
@@ -43,6 +43,20 @@ ReportTable coverage_table(const PlanResult& result) {
            {"gap of 99 %", text(gap.p99 / w), "× spacing", "99 % of the area have at most this gap."},
            {"mean gap", text(gap.mean / w), "× spacing"},
            {"evenness", text(gap.cv), "", "Standard deviation of the gap between passes over its mean."}}};
+}
+
+ReportTable scallop_table(const PlanResult& result) {
+  const ScallopReport& measured = result.scallop->measured;
+  return {"Scallop",
+          {{"wanted", text(result.job.scallop), "mm", "Height of the cusps between passes."},
+           {"lowest", text(measured.min), "mm", "Measured from the way of the ball; links and lifts do not cut."},
+           {"mean", text(measured.mean), "mm"},
+           {"99 % are below", text(measured.p99), "mm"},
+           {"highest", text(measured.max), "mm"},
+           {"sides without neighbour", text(100 * measured.open_share), "%", "Along rims, and where passes end."},
+           {"almost as hollow as the ball", text(100 * result.scallop->clamped_fraction), "% of the area"},
+           {"hollower than the ball", text(100 * result.scallop->gouged_fraction), "% of the area",
+            "The ball gouges there."}}};
 }
 
 std::vector<ReportIsoline> isolines_of(const PlanResult& result) {
@@ -67,10 +81,20 @@ std::string plan_report(const PlanResult& result) {
   data.scalars = {
       {.name = result.pattern == Pattern::planar ? "height" : "distance", .unit = "mm", .values = result.distances},
       {.name = "gap", .unit = "mm", .values = result.gap.vertex_gap, .least = 0, .greatest = 2 * w, .limit = 1.02 * w}};
+  if (result.scallop) {
+    const double wanted = result.job.scallop;
+    data.scalars.push_back({.name = "scallop",
+                            .unit = "mm",
+                            .values = result.scallop->measured.vertex_height,
+                            .least = 0,
+                            .greatest = 2 * wanted,
+                            .limit = 1.02 * wanted});
+  }
   data.isolines = isolines_of(result);
   data.impact = &result.impact.curve;
   data.tool = &result.tool;
   data.tables = {figures_table(result), coverage_table(result)};
+  if (result.scallop) data.tables.push_back(scallop_table(result));
   data.histograms = {{.title = "Gap over the surface",
                       .unit = "mm",
                       .bin_width = w / 20,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "isopath/contour/isolines.h"
@@ -14,6 +15,7 @@
 #include "isopath/field/vertex_field.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
+#include "isopath/plan/scallop_metric.h"
 #include "isopath/tool/make_tool_path.h"
 
 namespace isopath {
@@ -53,6 +55,7 @@ double peak_memory_mb() {
 
 double spacing_of(const Job& job, const TriangleMesh& mesh, std::vector<std::string>& warnings) {
   if (job.spacing > 0) return job.spacing;
+  if (job.scallop > 0) return scallop_pitch(job.scallop, 0.5 * job.tool.ball_diameter);
   const double spacing = mesh.size() / passes_over_size;
   warnings.push_back(
       fmt::format("no spacing was given: {} mm was taken, 1/{:.0f} of the part's size", spacing, passes_over_size));
@@ -102,7 +105,7 @@ struct Field {
   std::vector<double> at_vertices;
 };
 
-Field field_of(const Job& job, const Part& part, Progress& progress) {
+Field field_of(const Job& job, const Part& part, const IntrinsicGeometry* metric, Progress& progress) {
   progress.stage("distance field");
   if (job.pattern == Pattern::planar) {
     auto height = std::make_unique<VertexField>(height_field(part.mesh, job.planar_direction));
@@ -110,8 +113,9 @@ Field field_of(const Job& job, const Part& part, Progress& progress) {
     return {std::move(height), std::move(values)};
   }
   const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress);
-  auto exact = std::make_unique<ExactField>(
-      ExactField::compute(part.mesh, sources, {.accuracy = field_accuracy * part.mesh.size()}, progress));
+  const ExactFieldOptions options{.accuracy = field_accuracy * part.mesh.size()};
+  auto exact = std::make_unique<ExactField>(metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
+                                                   : ExactField::compute(part.mesh, sources, options, progress));
   std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
   return {std::move(exact), std::move(values)};
 }
@@ -148,8 +152,27 @@ Pattern pattern_of(const TriangleMesh& mesh, const Field& field, Progress& progr
   return closed >= open ? Pattern::spiral : Pattern::meander;
 }
 
+double length_ratio_of(const PlanResult& result, const IntrinsicGeometry* metric) {
+  if (!metric) return result.figures.cover_length * result.spacing / result.gap.area;
+  const TriangleMesh& mesh = result.part.mesh;
+  return cover_length(mesh, result.impact.curve, *metric) * result.spacing / area_in(mesh, *metric);
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
+}
+
+/// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
+std::optional<IntrinsicGeometry> warp_for_scallop(const Job& job, PlanResult& result, Progress& progress) {
+  if (!(job.scallop > 0)) return std::nullopt;
+  result.scallop.emplace();
+  if (job.pattern == Pattern::planar) return std::nullopt;
+  ScallopMetric metric = scallop_metric(result.part.mesh, 0.5 * job.tool.ball_diameter, progress);
+  append(result.warnings, metric.warnings);
+  result.scallop->clamped_fraction = metric.clamped_fraction;
+  result.scallop->gouged_fraction = metric.gouged_fraction;
+  result.part.mesh = std::move(metric.mesh);
+  return IntrinsicGeometry(result.part.mesh, metric.edge_lengths);
 }
 
 }  // namespace
@@ -167,23 +190,32 @@ PlanResult run_plan(const Job& job, Progress& progress) {
 
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
-  Field field = field_of(job, result.part, progress);
+  const std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
+  const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
+  Field field = field_of(job, result.part, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
   clock.ends("field");
 
   result.pattern = job.pattern ? *job.pattern : pattern_of(mesh, field, progress);
-  result.impact =
-      plan_impact(mesh, *field.function,
-                  {.pattern = result.pattern, .spacing = result.spacing, .clearance = job.clearance}, progress);
+  result.impact = plan_impact(
+      mesh, *field.function,
+      {.pattern = result.pattern, .spacing = result.spacing, .clearance = job.clearance, .metric = metric}, progress);
   append(result.warnings, result.impact.warnings);
   result.distances = std::move(field.at_vertices);
   field.function.reset();  // its windows are the largest thing in memory, and the gap needs windows of its own
   clock.ends("impact");
 
-  result.gap = measure_gap(mesh, result.impact.curve, result.spacing, progress);
+  result.gap = measure_gap(mesh, result.impact.curve, result.spacing, progress, metric);
   result.figures = path_figures(result.impact.curve, result.spacing);
+  result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
+
+  if (result.scallop) {
+    result.scallop->measured =
+        measure_scallop(mesh, result.impact.curve, 0.5 * job.tool.ball_diameter, result.spacing, progress);
+    clock.ends("scallop");
+  }
 
   progress.stage("tool path");
   result.tool = make_tool_path(result.impact.curve, job.tool, progress);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "isopath/plan/load_part.h"
 #include "isopath/plan/output_folder.h"
 #include "isopath/plan/path_figures.h"
+#include "isopath/tool/scallop.h"
 #include "isopath/tool/tool_path.h"
 
 namespace isopath {
@@ -20,15 +22,26 @@ struct StageTime {
   double seconds = 0;
 };
 
+/// What a ball leaves standing between passes.
+struct ScallopFigures {
+  ScallopReport measured;
+  double clamped_fraction = 0;  ///< see ScallopMetric
+  double gouged_fraction = 0;
+};
+
 /// All that a run found. Lengths in mm.
 struct PlanResult {
   Job job;  ///< as it was given: where it leaves a choice to the planner, the choice is in this result
   Part part;
-  double spacing = 0;
+  double spacing = 0;  ///< with a scallop: the pitch in the ball's metric, which is that on flat places
   Pattern pattern = Pattern::spiral;
   std::vector<double> distances;  ///< at every vertex: from the sources, or the height for planar; infinity: unreached
   ImpactPlan impact;
   GapReport gap;
+  /// Covering length × spacing / area: 1 is the least that evenly spaced passes need. With a scallop, both in the
+  /// ball's metric.
+  double length_ratio = 0;
+  std::optional<ScallopFigures> scallop;  ///< where the job asks for one
   PathFigures figures;
   ToolPath tool;
   std::vector<OutputFile> programs;  ///< of `make_programs`
@@ -37,11 +50,11 @@ struct PlanResult {
   std::vector<std::string> warnings;  ///< what the user should know, of all stages
 };
 
-/// Runs the whole chain: reads and repairs the part, computes the field of the sources, connects its isolines to an
-/// impact curve, measures the gap and lifts the curve to a tool path. Depends on nothing but the job and its files:
-/// the same job gives the same result, but for times and memory.
-/// Throws Error(bad_usage) for a job that cannot be run (also one of more than 20000 passes, or with lifts higher than
-/// 1000 times the part's size), Error(bad_input) for a file, Error(no_plan) with the reason when nothing can be covered
+/// Runs the whole chain: reads and repairs the part, warps it where a scallop is asked for, computes the field of the
+/// sources, connects its isolines to an impact curve, measures the gap and lifts the curve to a tool path. Depends on
+/// nothing but the job and its files: the same job gives the same result, but for times and memory. Throws
+/// Error(bad_usage) for a job that cannot be run (also one of more than 20000 passes, or with lifts higher than 1000
+/// times the part's size), Error(bad_input) for a file, Error(no_plan) with the reason when nothing can be covered
 /// (also when the spacing exceeds the part's size), Error(cancelled) on request.
 PlanResult run_plan(const Job& job, Progress& progress = Progress::none());
 
