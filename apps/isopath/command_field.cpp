@@ -13,6 +13,7 @@
 #include "commands.h"
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
+#include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/fast_marching.h"
 #include "isopath/field/graph_field.h"
@@ -122,9 +123,10 @@ Distances distances_of(const FieldArguments& arguments, const Part& part, const 
   if (arguments.method == "graph") {
     return {graph_distances(part.mesh, sources, {.virtual_vertices = 0, .across_pairs = true}, progress), {}};
   }
+  if (arguments.path_to.empty()) return {exact_distances(part.mesh, sources, infinity, progress), {}};
   const ExactField field = ExactField::compute(part.mesh, sources, {}, progress);
   Distances found{{field.vertex_distances().begin(), field.vertex_distances().end()}, {}};
-  if (!arguments.path_to.empty()) found.way = trace(part, field, arguments.path_to);
+  found.way = trace(part, field, arguments.path_to);
   return found;
 }
 

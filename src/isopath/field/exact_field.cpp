@@ -8,7 +8,7 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field_data.h"
 #include "isopath/field/graph_field.h"
-#include "isopath/field/window_propagation.h"
+#include "isopath/field/list_propagation.h"
 
 namespace isopath {
 namespace {
@@ -128,31 +128,30 @@ ExactField::~ExactField() = default;
 
 ExactField ExactField::compute(const TriangleMesh& mesh, const SourceSet& sources, const ExactFieldOptions& options,
                                Progress& progress) {
-  return run(std::make_unique<ExactFieldData>(mesh, IntrinsicGeometry(mesh), sources), mesh, options, progress);
+  return run(std::make_unique<ExactFieldData>(mesh, IntrinsicGeometry(mesh), sources), options, progress);
 }
 
 ExactField ExactField::compute(const TriangleMesh& mesh, IntrinsicGeometry metric, const SourceSet& sources,
                                const ExactFieldOptions& options, Progress& progress) {
-  std::vector<double> lengths(mesh.n_edges());
-  for (Index e = 0; e < mesh.n_edges(); ++e) lengths[e] = metric.length(mesh.halfedge_of(e));
-  const TriangleMesh warped = mesh.with_edge_lengths(std::move(lengths));  // the propagation reads no positions
-  return run(std::make_unique<ExactFieldData>(mesh, std::move(metric), sources), warped, options, progress);
+  return run(std::make_unique<ExactFieldData>(mesh, std::move(metric), sources), options, progress);
 }
 
-ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const TriangleMesh& warped,
-                           const ExactFieldOptions& options, Progress& progress) {
+ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFieldOptions& options, Progress& progress) {
   const SourceSet& sources = data->sources;
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   options.validate();
   index_sources(*data);
-  WindowPropagation propagation(warped, data->geometry, sources,
-                                merge_limits(data->mesh, data->geometry, sources, options, progress));
+  ListPropagation propagation(
+      data->mesh, data->geometry, sources,
+      {.retain = true, .limits = merge_limits(data->mesh, data->geometry, sources, options, progress)});
   propagation.run(options.stop_distance, progress);
+  data->propagated = propagation.propagated();
+  ListPropagation::RetainedWindows retained = propagation.take_windows(progress);
+  data->windows = std::move(retained.windows);
+  data->first_window = std::move(retained.first);
   data->distance = std::move(propagation.vertex_distances());
   data->root = std::move(propagation.vertex_roots());
   data->fans = std::move(propagation.fans());
-  data->propagated = propagation.propagated();
-  data->windows = propagation.windows().take(data->first_window);
   return ExactField(std::move(data));
 }
 
@@ -192,13 +191,13 @@ SurfaceFunction::Slope ExactField::slope(const SurfacePoint& point) const {
 }
 
 void ExactField::edge_crossings(Index edge, double level, std::vector<double>& parameters) const {
-  const Index first = data_->first_window[edge];
-  const Index past = data_->first_window[edge + 1];
+  const std::size_t first = data_->first_window[edge];
+  const std::size_t past = data_->first_window[edge + 1];
   const Index h = data_->mesh.halfedge_of(edge);
   const double length = data_->geometry.length(h);
   bool above = data_->distance[data_->mesh.from(h)] >= level;
   const bool ends_above = data_->distance[data_->mesh.to(h)] >= level;
-  for (Index i = first; i < past; ++i) {
+  for (std::size_t i = first; i < past; ++i) {
     const Window& w = data_->windows[i];
     const bool above_after =
         i + 1 == past
@@ -239,7 +238,7 @@ bool ExactField::monotone_in_face(Index face) const {
     }
     const Index edge = data_->mesh.edge_of(h);
     const double sign = data_->mesh.halfedge_of(edge) == h ? 1 : -1;
-    for (Index id = data_->first_window[edge]; id < data_->first_window[edge + 1]; ++id) {
+    for (std::size_t id = data_->first_window[edge]; id < data_->first_window[edge + 1]; ++id) {
       const Window& w = data_->windows[id];
       if (w.halfedge != h) continue;
       if (!add(sign * w.direction(w.begin)) || !add(sign * w.direction(w.end))) return false;

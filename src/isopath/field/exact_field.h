@@ -78,9 +78,7 @@ class ExactField final : public SurfaceFunction {
 
  private:
   explicit ExactField(std::unique_ptr<ExactFieldData> data);
-  /// `warped` has the edge lengths of the data's geometry.
-  static ExactField run(std::unique_ptr<ExactFieldData> data, const TriangleMesh& warped,
-                        const ExactFieldOptions& options, Progress& progress);
+  static ExactField run(std::unique_ptr<ExactFieldData> data, const ExactFieldOptions& options, Progress& progress);
   std::unique_ptr<ExactFieldData> data_;
 };
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/list_propagation.h"
 #include "isopath/field/source.h"
-#include "isopath/field/window_propagation.h"
 
 namespace isopath {
 
@@ -19,15 +19,15 @@ struct ExactFieldData {
   /// Ids of an edge's windows: from first_window[edge] up to first_window[edge + 1].
   template <class Visit>
   void for_each_window(Index edge, Visit&& visit) const {
-    for (Index id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
+    for (std::size_t id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
   }
   /// The same for the windows that reach into [low, high] of the edge.
   template <class Visit>
   void for_each_window(Index edge, double low, double high, Visit&& visit) const {
-    Index id = first_window[edge];
-    Index past = first_window[edge + 1];
+    std::size_t id = first_window[edge];
+    std::size_t past = first_window[edge + 1];
     while (past - id > 8) {  // windows are sorted: the first that ends behind `low`
-      const Index middle = id + (past - id) / 2;
+      const std::size_t middle = id + (past - id) / 2;
       (windows[middle].end < low ? id : past) = middle;
     }
     for (; id < first_window[edge + 1] && windows[id].begin <= high; ++id) {
@@ -58,8 +58,8 @@ struct ExactFieldData {
   const TriangleMesh& mesh;
   IntrinsicGeometry geometry;
   SourceSet sources;
-  WindowPool windows;
-  std::vector<Index> first_window;         ///< per edge, and one past the last
+  std::vector<Window> windows;
+  std::vector<std::size_t> first_window;   ///< per edge, and one past the last
   std::vector<double> distance;            ///< per vertex
   std::vector<Index> root;                 ///< per vertex
   std::vector<FanArc> fans;                ///< per half-edge: what its tail, as a pseudo-source, sends into its face

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <tbb/parallel_for.h>
 #include <algorithm>
 #include <array>
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -55,8 +57,8 @@ void check_lengths(const TriangleMesh& mesh, std::span<const double> lengths) {
 }  // namespace
 
 IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh)
-    : size_(mesh.size()), length_(mesh.n_halfedges()), apex_(mesh.n_halfedges()) {
-  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
+    : size_(mesh.size()), length_(mesh.n_halfedges()), apex_(mesh.n_halfedges()), angle_(mesh.n_halfedges()) {
+  tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     const Vec3& a = mesh.position(mesh.from(h));
     const Vec3 along = mesh.position(mesh.to(h)) - a;
     const Vec3 towards = mesh.position(mesh.from(TriangleMesh::prev(h))) - a;
@@ -64,17 +66,23 @@ IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh)
     length_[h] = mesh.edge_length(mesh.edge_of(h));
     apex_[h] = length_[h] > 0 ? Vec2(along.dot(towards) / length_[h], along.cross(towards).norm() / length_[h])
                               : Vec2(0, towards.norm());
-  }
+    angle_[h] = std::atan2(apex_[h].y(), apex_[h].x());
+  });
 }
 
 IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh, std::span<const double> edge_lengths)
-    : is_metric_(true), max_stretch_(0), length_(mesh.n_halfedges()), apex_(mesh.n_halfedges()) {
+    : is_metric_(true),
+      max_stretch_(0),
+      length_(mesh.n_halfedges()),
+      apex_(mesh.n_halfedges()),
+      angle_(mesh.n_halfedges()) {
   check_lengths(mesh, edge_lengths);
   for (Index h = 0; h < mesh.n_halfedges(); ++h) {
     const double right = edge_lengths[mesh.edge_of(TriangleMesh::next(h))];
     const double left = edge_lengths[mesh.edge_of(TriangleMesh::prev(h))];
     length_[h] = edge_lengths[mesh.edge_of(h)];
     apex_[h] = apex_of(length_[h], right, left);
+    angle_[h] = std::atan2(apex_[h].y(), apex_[h].x());
     const double in_space = mesh.edge_length(mesh.edge_of(h));
     if (in_space > 0) max_stretch_ = std::max(max_stretch_, length_[h] / in_space);
   }
@@ -94,10 +102,6 @@ IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh, std::span<const d
     max_stretch_ = std::max(max_stretch_, 0.5 * (std::hypot(a + d, b) + std::hypot(a - d, b)));
   }
   size_ = max_stretch_ * mesh.size();
-}
-
-double IntrinsicGeometry::angle_at_tail(Index halfedge) const {
-  return std::atan2(apex_[halfedge].y(), apex_[halfedge].x());
 }
 
 Vec2 IntrinsicGeometry::in_frame(Index halfedge, const Vec3& barycentric) const {

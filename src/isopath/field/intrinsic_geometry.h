@@ -28,7 +28,7 @@ class IntrinsicGeometry {
   /// The corner opposite the half-edge, in the half-edge's frame.
   const Vec2& apex(Index halfedge) const { return apex_[halfedge]; }
   /// Interior angle of the half-edge's face at its tail, in [0, π].
-  double angle_at_tail(Index halfedge) const;
+  double angle_at_tail(Index halfedge) const { return angle_[halfedge]; }
   double face_area(Index face) const { return 0.5 * length_[3 * face] * apex_[3 * face].y(); }
 
   /// A point given by barycentric coordinates of the half-edge's face, in the half-edge's frame.
@@ -49,6 +49,7 @@ class IntrinsicGeometry {
   double size_ = 0;
   std::vector<double> length_;
   std::vector<Vec2> apex_;
+  std::vector<double> angle_;
 };
 
 }  // namespace isopath

@@ -27,7 +27,6 @@ struct Window {
   /// A path along the edge from its end, or the source on the edge itself. It goes no farther, and gives way to real
   /// fronts in a tie: it is there for points that are reached by a single ray, along the edge.
   bool filler = false;
-  bool pending = false;  ///< still to be propagated
 
   double distance(double x) const { return kind == Kind::point ? offset + radius(x) : offset + source.x() * x; }
   /// Distance of x from a point window's source. Coordinates are limited so that squares stay finite (see

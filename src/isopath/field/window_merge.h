@@ -16,8 +16,8 @@ struct MergeLimits {
   double allowed_at(double distance) const { return accuracy * std::clamp(distance / reach, 0.0, 1.0); }
 };
 
-/// One window in place of two that lie side by side on an edge, `left.end == right.begin`; both still to be propagated,
-/// and into the same face. After Surazhsky et al. 2005, with a bound. False, with `merged` untouched, where distances
+/// One window in place of two of an edge that enter the same face; the left one begins and ends first, and no gap is
+/// between them. After Surazhsky et al. 2005, with a bound. False, with `merged` untouched, where distances
 /// would change by more than the limits allow, as Window::error tells. `merged` may be one of the two.
 ///
 /// Distances behind an edge are the least of distance on the edge plus way from there, so a change on the edge changes

@@ -177,16 +177,6 @@ void TriangleMesh::label_components() {
   }
 }
 
-TriangleMesh TriangleMesh::with_edge_lengths(std::vector<double> lengths) const {
-  if (static_cast<Index>(lengths.size()) != n_edges()) {
-    throw Error(ErrorCode::bad_usage, "there must be one length for each edge of the mesh",
-                {.element = "edge lengths", .value = fmt::format("{} lengths, {} edges", lengths.size(), n_edges())});
-  }
-  TriangleMesh copy = *this;
-  copy.edge_length_ = std::move(lengths);
-  return copy;
-}
-
 Vec3 TriangleMesh::face_normal(Index face) const {
   const auto& [a, b, c] = triangle(face);
   return (position(b) - position(a)).cross(position(c) - position(a)).stableNormalized();

@@ -47,10 +47,6 @@ class TriangleMesh {
   bool is_boundary_edge(Index edge) const { return twin_[halfedge_of_edge_[edge]] == no_index; }
   double edge_length(Index edge) const { return edge_length_[edge]; }
   std::span<const double> edge_lengths() const { return edge_length_; }
-  /// A copy whose edges have these lengths, in the order of the edges, in place of those in space: for methods that
-  /// take connectivity and lengths and run in another metric. Areas, normals and bounds stay those in space. Throws
-  /// Error(bad_usage) when the number of lengths is not that of the edges.
-  TriangleMesh with_edge_lengths(std::vector<double> lengths) const;
 
   /// An outgoing half-edge of the vertex; the one without twin when the vertex is on the boundary, so that
   /// `next_outgoing` from it visits the whole fan. `no_index` for an unused vertex.

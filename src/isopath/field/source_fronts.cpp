@@ -1,11 +1,11 @@
-// How sources enter the propagation: segments send straight fronts over their strip, points circles over what the
-// strips leave.
+#include "isopath/field/source_fronts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "isopath/field/source_faces.h"
-#include "isopath/field/window_propagation.h"
 
 namespace isopath {
 namespace {
@@ -36,9 +36,30 @@ bool on_edge(const SourceElement& segment, Index& halfedge) {
   return false;
 }
 
-}  // namespace
+class FrontBuilder {
+ public:
+  FrontBuilder(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) : mesh_(mesh), geometry_(geometry) {}
 
-void WindowPropagation::start(const SourceSet& sources) {
+  SourceFronts build(const SourceSet& sources);
+
+ private:
+  void start_segment(const SourceElement& element, Index id);
+  void start_segment_in_face(const SourceElement& element, Index id, Index face);
+  void start_point(std::span<const SourceElement> elements, Index id);
+  void start_point_in_face(std::span<const SourceElement> elements, Index id, Index face);
+  void start_vertex(std::span<const SourceElement> elements, Index id, Index vertex);
+  std::vector<BlockedArc> served_by_segments(std::span<const SourceElement> elements, Index id, Index vertex) const;
+  std::vector<Vec2> segment_directions(std::span<const SourceElement> elements, Index id, Index halfedge) const;
+  void insert_leaving(Index halfedge, const Window& window) { fronts_.fronts.push_back({halfedge, window}); }
+
+  const TriangleMesh& mesh_;
+  const IntrinsicGeometry& geometry_;
+  std::vector<Index> source_at_;  ///< per vertex: index into fronts_.vertices, or none
+  SourceFronts fronts_;
+};
+
+SourceFronts FrontBuilder::build(const SourceSet& sources) {
+  source_at_.assign(mesh_.n_vertices(), no_index);
   const auto elements = sources.elements();
   // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
   for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
@@ -47,9 +68,10 @@ void WindowPropagation::start(const SourceSet& sources) {
   for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
     if (elements[id].kind == SourceElement::Kind::point) start_point(elements, id);
   }
+  return std::move(fronts_);
 }
 
-void WindowPropagation::start_segment(const SourceElement& element, Index id) {
+void FrontBuilder::start_segment(const SourceElement& element, Index id) {
   Index h = no_index;
   start_segment_in_face(element, id, element.a.face);
   if (!on_edge(element, h)) return;
@@ -73,7 +95,7 @@ void WindowPropagation::start_segment(const SourceElement& element, Index id) {
   }
 }
 
-void WindowPropagation::start_segment_in_face(const SourceElement& element, Index id, Index face) {
+void FrontBuilder::start_segment_in_face(const SourceElement& element, Index id, Index face) {
   Index own_edge = no_index;
   on_edge(element, own_edge);
   for (Index h = 3 * face; h < 3 * face + 3; ++h) {
@@ -101,8 +123,8 @@ void WindowPropagation::start_segment_in_face(const SourceElement& element, Inde
   }
 }
 
-std::vector<Vec2> WindowPropagation::segment_directions(std::span<const SourceElement> elements, Index id,
-                                                        Index halfedge) const {
+std::vector<Vec2> FrontBuilder::segment_directions(std::span<const SourceElement> elements, Index id,
+                                                   Index halfedge) const {
   const SourceElement& point = elements[id];
   const Support support = support_of(mesh_, point.a);
   std::vector<Vec2> directions;
@@ -136,7 +158,7 @@ std::vector<Vec2> WindowPropagation::segment_directions(std::span<const SourceEl
   return directions;
 }
 
-void WindowPropagation::start_point(std::span<const SourceElement> elements, Index id) {
+void FrontBuilder::start_point(std::span<const SourceElement> elements, Index id) {
   const Support support = support_of(mesh_, elements[id].a);
   if (support.kind == Support::Kind::vertex) {
     start_vertex(elements, id, support.index);
@@ -153,7 +175,7 @@ void WindowPropagation::start_point(std::span<const SourceElement> elements, Ind
   }
 }
 
-void WindowPropagation::start_point_in_face(std::span<const SourceElement> elements, Index id, Index face) {
+void FrontBuilder::start_point_in_face(std::span<const SourceElement> elements, Index id, Index face) {
   const SurfacePoint point = express_in(mesh_, elements[id].a, face);
   const Support support = support_of(mesh_, point);
   for (Index h = 3 * face; h < 3 * face + 3; ++h) {
@@ -169,40 +191,50 @@ void WindowPropagation::start_point_in_face(std::span<const SourceElement> eleme
   }
 }
 
-void WindowPropagation::start_vertex(std::span<const SourceElement> elements, Index id, Index vertex) {
-  if (source_at_[vertex] == no_index) {
-    source_at_[vertex] = static_cast<Index>(source_arcs_.size());
-    source_arcs_.emplace_back();
-    // Segments that end here served their strips; the fan takes the rest.
-    double start = 0;
-    Index h = mesh_.outgoing(vertex);
-    do {
-      for (const Index s : {elements[id].segment_before, elements[id].segment_after}) {
-        if (s == no_index) continue;
-        const SourceElement& segment = elements[s];
-        const bool before = s == elements[id].segment_before;
-        const SurfacePoint& far_end = before ? segment.a : segment.b;
-        Index carrier = no_index;
-        const bool along_edge = on_edge(segment, carrier);
-        if (along_edge && mesh_.edge_of(carrier) == mesh_.edge_of(h)) {
-          source_arcs_.back().push_back({start, half_pi});
-        } else if (along_edge && mesh_.edge_of(carrier) == mesh_.edge_of(TriangleMesh::prev(h)) &&
-                   mesh_.twin(TriangleMesh::prev(h)) == no_index) {
-          source_arcs_.back().push_back({start + geometry_.angle_at_tail(h), half_pi});
-        } else if (!along_edge && segment.a.face == TriangleMesh::face_of(h)) {
-          const Vec2 d = geometry_.in_frame(h, far_end.barycentric);
-          source_arcs_.back().push_back({start + std::atan2(d.y(), d.x()), half_pi});
-        }
+std::vector<BlockedArc> FrontBuilder::served_by_segments(std::span<const SourceElement> elements, Index id,
+                                                         Index vertex) const {
+  std::vector<BlockedArc> arcs;
+  double start = 0;
+  Index h = mesh_.outgoing(vertex);
+  do {
+    for (const Index s : {elements[id].segment_before, elements[id].segment_after}) {
+      if (s == no_index) continue;
+      const SourceElement& segment = elements[s];
+      const bool before = s == elements[id].segment_before;
+      const SurfacePoint& far_end = before ? segment.a : segment.b;
+      Index carrier = no_index;
+      const bool along_edge = on_edge(segment, carrier);
+      if (along_edge && mesh_.edge_of(carrier) == mesh_.edge_of(h)) {
+        arcs.push_back({start, half_pi});
+      } else if (along_edge && mesh_.edge_of(carrier) == mesh_.edge_of(TriangleMesh::prev(h)) &&
+                 mesh_.twin(TriangleMesh::prev(h)) == no_index) {
+        arcs.push_back({start + geometry_.angle_at_tail(h), half_pi});
+      } else if (!along_edge && segment.a.face == TriangleMesh::face_of(h)) {
+        const Vec2 d = geometry_.in_frame(h, far_end.barycentric);
+        arcs.push_back({start + std::atan2(d.y(), d.x()), half_pi});
       }
-      start += geometry_.angle_at_tail(h);
-      h = mesh_.next_outgoing(h);
-    } while (h != no_index && h != mesh_.outgoing(vertex));
-  } else {
-    source_arcs_[source_at_[vertex]].clear();  // several elements meet: let the envelope choose
+    }
+    start += geometry_.angle_at_tail(h);
+    h = mesh_.next_outgoing(h);
+  } while (h != no_index && h != mesh_.outgoing(vertex));
+  return arcs;
+}
+
+void FrontBuilder::start_vertex(std::span<const SourceElement> elements, Index id, Index vertex) {
+  if (source_at_[vertex] == no_index) {
+    source_at_[vertex] = static_cast<Index>(fronts_.vertices.size());
+    fronts_.vertices.push_back({vertex, id, served_by_segments(elements, id, vertex)});
+    return;
   }
-  distance_[vertex] = 0;
-  root_[vertex] = id;
-  queue_.push({0, ~vertex});
+  SourceFronts::Vertex& shared = fronts_.vertices[source_at_[vertex]];
+  shared.root = id;
+  shared.blocked.clear();  // several elements meet: let the envelope choose
+}
+
+}  // namespace
+
+SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources) {
+  return FrontBuilder(mesh, geometry).build(sources);
 }
 
 }  // namespace isopath

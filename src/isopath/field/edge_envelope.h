@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "isopath/field/window.h"
+#include "isopath/field/window_merge.h"
+
+namespace isopath {
+
+/// The windows of one edge: sorted, without overlap, the lower envelope of all fronts that come by.
+class EdgeEnvelope {
+ public:
+  /// Begins with an empty edge. `snap` is the width below which an interval is nothing: it is given to its neighbour,
+  /// never left open.
+  void reset(double length, double snap);
+
+  /// Puts in the parts of a window, in the frame of the canonical half-edge, that are nearer than what is there, and
+  /// trims or removes what they beat.
+  void insert(const Window& window);
+
+  /// Merges neighbours that enter the same face as long as the limits allow it.
+  void merge(const MergeLimits& limits);
+
+  const std::vector<Window>& windows() const { return windows_; }
+
+ private:
+  struct Part {
+    double begin;
+    double end;
+    Index old;  ///< window that was there, or `newcomer`
+  };
+  static constexpr Index newcomer = -2;
+
+  void append(double begin, double end, Index old);
+  void divide_overlap(Index old, const Window& window, double low, double high);
+  void absorb_narrow_parts();
+  void write_back(std::size_t first, std::size_t past, const Window& window);
+
+  double length_ = 0;
+  double snap_ = 0;
+  std::vector<Window> windows_;
+  std::vector<Part> parts_;       // scratch of insert
+  std::vector<Window> replaced_;  // scratch of insert
+};
+
+}  // namespace isopath

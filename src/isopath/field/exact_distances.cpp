@@ -1,0 +1,23 @@
+#include "isopath/field/exact_distances.h"
+
+#include <utility>
+
+#include "isopath/core/error.h"
+#include "isopath/field/list_propagation.h"
+
+namespace isopath {
+
+std::vector<double> exact_distances(const TriangleMesh& mesh, const SourceSet& sources, double stop_distance,
+                                    Progress& progress) {
+  return exact_distances(mesh, IntrinsicGeometry(mesh), sources, stop_distance, progress);
+}
+
+std::vector<double> exact_distances(const TriangleMesh& mesh, const IntrinsicGeometry& metric, const SourceSet& sources,
+                                    double stop_distance, Progress& progress) {
+  if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
+  ListPropagation propagation(mesh, metric, sources, {});
+  propagation.run(stop_distance, progress);
+  return std::move(propagation.vertex_distances());
+}
+
+}  // namespace isopath

@@ -1,0 +1,433 @@
+#include "isopath/field/list_propagation.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "isopath/field/vertex_fan.h"
+
+namespace isopath {
+namespace {
+
+constexpr Index not_waiting = std::numeric_limits<Index>::max();
+/// Distances are sums of a few square roots; a difference below this part of the model's size decides nothing.
+constexpr double rounding = 1e-14;
+/// So few items are not worth waking another thread for.
+constexpr std::size_t worth_sharing = 32;
+/// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
+constexpr double bucket_width = 0.5;
+constexpr std::size_t kept_chunk = 1 << 16;
+
+double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
+  double sum = 0;
+  for (Index e = 0; e < mesh.n_edges(); ++e) sum += geometry.length(mesh.halfedge_of(e));
+  return sum / std::max<Index>(mesh.n_edges(), 1);
+}
+
+/// Calls work(first, past) for parts of [0, n), at the same time.
+template <class Work>
+void share(std::size_t n, Work&& work) {
+  if (n < worth_sharing) return work(0, n);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, worth_sharing / 2),
+                    [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
+}
+
+}  // namespace
+
+ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                                 const Options& options)
+    : mesh_(mesh),
+      geometry_(geometry),
+      options_(options),
+      distance_(mesh.n_vertices(), infinity),
+      root_(mesh.n_vertices(), no_index),
+      arrival_(mesh.n_vertices()),
+      source_at_(mesh.n_vertices(), no_index),
+      fans_(options.retain ? mesh.n_halfedges() : 0),
+      kept_(options.retain ? mesh.n_halfedges() : 0, nullptr),
+      waiting_(3 * static_cast<std::size_t>(mesh.n_halfedges()), nullptr),
+      bucket_of_halfedge_(mesh.n_halfedges(), not_waiting),
+      bucket_of_vertex_(mesh.n_vertices(), not_waiting),
+      workshops_(options.retain),
+      bucket_width_(bucket_width * mean_length(mesh, geometry)),
+      margin_(rounding * geometry.size() + 2 * options.limits.accuracy) {
+  start(source_fronts(mesh, geometry, sources));
+}
+
+std::size_t ListPropagation::window_bytes() const {
+  std::size_t bytes = 0;
+  for (const Workshop& workshop : workshops_) bytes += workshop.blocks.bytes();
+  return bytes;
+}
+
+Index ListPropagation::waiting_place(Index leaving) const {
+  const Index twin = mesh_.twin(leaving);
+  return twin == no_index && options_.retain ? leaving : twin;
+}
+
+void ListPropagation::start(const SourceFronts& fronts) {
+  WindowBlocks& blocks = workshops_.local().blocks;
+  for (const SourceFronts::Vertex& source : fronts.vertices) {
+    source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
+    source_arcs_.push_back(source.blocked);
+    offer_vertex(source.vertex, 0, source.root, {mesh_.outgoing(source.vertex)});
+  }
+  for (const SourceFronts::Front& front : fronts.fronts) {
+    const Index h = front.halfedge;
+    const Window& w = front.window;
+    const double length = geometry_.length(h);
+    // The fronts arrive from inside the half-edge's face: y is positive, or negative in a direction.
+    const auto turn_of = [](const Vec2& back) { return std::atan2(std::max(back.y(), 0.0), back.x()); };
+    if (w.begin == 0) offer_vertex(mesh_.from(h), w.distance(0), w.root, {h, turn_of(-w.direction(0))});
+    if (w.end == length) {
+      const Index outgoing = TriangleMesh::next(h);
+      const double turn = geometry_.angle_at_tail(outgoing) - turn_of(Vec2(1, -1).cwiseProduct(w.direction(length)));
+      offer_vertex(mesh_.to(h), w.distance(length), w.root, {outgoing, turn});
+    }
+    if (w.filler && options_.retain) {
+      const Index edge = mesh_.edge_of(h);
+      edge_sources_.emplace_back(edge, mesh_.halfedge_of(edge) == h ? w : w.flipped(length));
+    }
+    const Index place = waiting_place(h);
+    if (place == no_index || w.filler) continue;
+    const Window turned = w.flipped(length);
+    WindowBlock* block = blocks.take(1);
+    blocks.arrays(block).set(0, turned);
+    block->size = 1;
+    block->least = std::max(turned.min_distance(), 0.0);
+    put_down(place, from_corner, block);
+    push_halfedge(place, block->least);
+  }
+  const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::stable_sort(edge_sources_.begin(), edge_sources_.end(), by_edge);
+}
+
+void ListPropagation::push_halfedge(Index halfedge, double least) {
+  const Index bucket = std::max(bucket_, static_cast<Index>(least / bucket_width_));
+  if (bucket >= bucket_of_halfedge_[halfedge]) return;
+  bucket_of_halfedge_[halfedge] = bucket;
+  if (bucket >= static_cast<Index>(halfedges_.size())) halfedges_.resize(bucket + 1);
+  halfedges_[bucket].push_back(halfedge);
+}
+
+void ListPropagation::offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival) {
+  distance = std::max(distance, 0.0);
+  if (!(distance < distance_[vertex])) return;
+  distance_[vertex] = distance;
+  root_[vertex] = root;
+  arrival_[vertex] = arrival;
+  const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
+  if (bucket >= bucket_of_vertex_[vertex]) return;
+  bucket_of_vertex_[vertex] = bucket;
+  if (bucket >= static_cast<Index>(vertices_.size())) vertices_.resize(bucket + 1);
+  vertices_[bucket].push_back(vertex);
+}
+
+void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block) {
+  WindowBlock*& first = waiting_[3 * static_cast<std::size_t>(halfedge) + feeder];
+  block->next = first;
+  first = block;
+}
+
+void ListPropagation::relax_edges(Index vertex) {
+  const double distance = distance_[vertex];
+  const double error = arrival_[vertex].error;
+  const Index root = root_[vertex];
+  Index h = mesh_.outgoing(vertex);
+  Index last = no_index;
+  do {
+    const Index to = mesh_.to(h);
+    const double there = distance + geometry_.length(h);
+    if (there < distance_[to]) {
+      const Index back = mesh_.twin(h);
+      const Index next = TriangleMesh::next(h);
+      offer_vertex(to, there, root,
+                   back != no_index ? Arrival{back, 0, error} : Arrival{next, geometry_.angle_at_tail(next), error});
+    }
+    last = h;
+    h = mesh_.next_outgoing(h);
+  } while (h != no_index && h != mesh_.outgoing(vertex));
+  if (h != no_index) return;
+  const Index arriving = TriangleMesh::prev(last);  // the boundary edge that closes the fan
+  offer_vertex(mesh_.from(arriving), distance + geometry_.length(arriving), root, {arriving, 0, error});
+}
+
+double ListPropagation::arrival_angle(Index vertex) const {
+  double sum = arrival_[vertex].turn;
+  for (Index h = mesh_.outgoing(vertex); h != arrival_[vertex].halfedge; h = mesh_.next_outgoing(h))
+    sum += geometry_.angle_at_tail(h);
+  return sum;
+}
+
+void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
+  const double total = total_angle(mesh_, geometry_, vertex);
+  const bool is_source = source_at_[vertex] != no_index;
+  if (!is_source && !may_bend(mesh_, vertex, total)) return;
+  BlockedArc behind;
+  if (!is_source) behind = {arrival_angle(vertex), std::numbers::pi - angle_slack};
+  const std::span<const BlockedArc> blocked =
+      is_source ? std::span<const BlockedArc>(source_arcs_[source_at_[vertex]]) : std::span(&behind, 1);
+  if (options_.retain) {
+    Index h = mesh_.outgoing(vertex);
+    do {
+      fans_[h] = {};
+      h = mesh_.next_outgoing(h);
+    } while (h != no_index && h != mesh_.outgoing(vertex));
+  }
+  for_each_free_arc(mesh_, geometry_, vertex, total, blocked, [&](Index outgoing, double low, double high, bool cut) {
+    if (options_.retain) fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
+    const Index opposite = TriangleMesh::next(outgoing);
+    const Index place = waiting_place(opposite);
+    if (place == no_index) return;
+    const FanInterval interval = fan_interval(geometry_, outgoing, low, cut ? high : infinity);
+    const double length = geometry_.length(opposite);
+    if (!(interval.begin < interval.end)) return;
+    Window window;
+    window.begin = length - interval.end;
+    window.end = length - interval.begin;
+    window.source = Vec2(length, 0) - geometry_.apex(opposite);
+    window.offset = distance_[vertex];
+    window.root = root_[vertex];
+    window.error = arrival_[vertex].error;
+    WindowBlock* block = workshop.blocks.take(1);
+    workshop.blocks.arrays(block).set(0, window);
+    block->size = 1;
+    block->least = window.min_distance();
+    put_down(place, from_corner, block);
+  });
+}
+
+void ListPropagation::take_lists(Index halfedge, Crossing& crossing) {
+  crossing = {};
+  crossing.halfedge = halfedge;
+  for (int k = 0; k < 3; ++k)
+    crossing.lists[k] = std::exchange(waiting_[3 * static_cast<std::size_t>(halfedge) + k], nullptr);
+}
+
+WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
+  const std::size_t capacity = n + WindowBlock::lanes;
+  const std::size_t needed = (tagged ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
+  if (arrays[which].size() < needed) arrays[which].resize(2 * needed);
+  return WindowArrays::at(arrays[which].data(), capacity, tagged);
+}
+
+ListPropagation::KeptList* ListPropagation::Workshop::keep(const WindowArrays& windows, std::size_t n) {
+  constexpr std::size_t header = sizeof(KeptList) / sizeof(double);
+  const std::size_t needed = header + WindowArrays::tagged_count * n;
+  if (left < needed) {
+    left = std::max(kept_chunk, needed);
+    kept.push_back(std::make_unique_for_overwrite<double[]>(left));
+    fresh = kept.back().get();
+  }
+  auto* list = new (fresh) KeptList{nullptr, n};
+  windows.copy(n, WindowArrays::at(fresh + header, n, true));
+  fresh += needed;
+  left -= needed;
+  return list;
+}
+
+namespace {
+
+/// Merges two sorted lists.
+void merge(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b, const WindowArrays& to) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  std::size_t k = 0;
+  const auto copy = [&](const WindowArrays& from, std::size_t at) {
+    to.begin[k] = from.begin[at];
+    to.end[k] = from.end[at];
+    to.x[k] = from.x[at];
+    to.y[k] = from.y[at];
+    to.offset[k] = from.offset[at];
+    if (from.root != nullptr) {
+      to.root[k] = from.root[at];
+      to.error[k] = from.error[at];
+    }
+    ++k;
+  };
+  while (i < n_a && j < n_b) {
+    if (a.begin[i] <= b.begin[j]) {
+      copy(a, i++);
+    } else {
+      copy(b, j++);
+    }
+  }
+  (a + i).copy(n_a - i, to + k);
+  (b + j).copy(n_b - j, to + (k + n_a - i));
+}
+
+}  // namespace
+
+WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std::size_t& n,
+                                     WindowBlock*& owner) const {
+  WindowArrays gathered;
+  owner = nullptr;
+  n = 0;
+  int which = 0;
+  for (WindowBlock* first : crossing.lists) {
+    for (WindowBlock* block = first; block != nullptr;) {
+      WindowBlock* next = block->next;
+      const auto size = static_cast<std::size_t>(block->size);
+      if (n == 0) {
+        gathered = workshop.blocks.arrays(block);
+        owner = block;
+      } else {
+        const WindowArrays to = workshop.scratch(which, n + size);
+        merge(gathered, n, workshop.blocks.arrays(block), size, to);
+        if (owner != nullptr) workshop.blocks.give_back(std::exchange(owner, nullptr));
+        workshop.blocks.give_back(block);
+        gathered = to;
+        which = 1 - which;
+      }
+      n += size;
+      block = next;
+    }
+  }
+  return gathered;
+}
+
+void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
+  const Index h = crossing.halfedge;
+  std::size_t n = 0;
+  WindowBlock* owner = nullptr;
+  WindowArrays windows = gather(crossing, workshop, n, owner);
+  if (workshop.sides[0].size() < n + WindowBlock::lanes + 1) {
+    for (auto& side : workshop.sides) side.resize(2 * n + WindowBlock::lanes + 1);
+  }
+  double* side_of_begin = workshop.sides[0].data();
+  double* side_of_end = workshop.sides[1].data();
+
+  const Index next = TriangleMesh::next(h);
+  const Index previous = TriangleMesh::prev(h);
+  const StepGeometry triangle{geometry_.length(h), geometry_.apex(h), geometry_.length(previous),
+                              geometry_.length(next)};
+  const bool leaves_surface = mesh_.twin(h) == no_index;  // see waiting_place
+  const Index tail = leaves_surface ? mesh_.to(h) : mesh_.from(h);
+  const Index head = leaves_surface ? mesh_.from(h) : mesh_.to(h);
+  n = trim_by_vertices(windows, n, triangle.length, distance_[tail], distance_[head], margin_);
+  if (trim_by_neighbours(windows, n, margin_, side_of_begin, side_of_end)) {
+    std::copy_n(side_of_begin, n, windows.begin);
+    std::copy_n(side_of_end, n, windows.end);
+    n = drop_empty(windows, n);
+  }
+  if (options_.limits.accuracy > 0) windows = merged(windows, n, mesh_.edge_of(h), workshop);
+  if (options_.retain && n > 0) {
+    KeptList* list = workshop.keep(windows, n);
+    list->next = std::exchange(kept_[h], list);
+  }
+  crossing.n_windows = static_cast<Index>(n);
+  if (n > 0 && !leaves_surface) {
+    const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
+    const Index corner = mesh_.from(previous);
+    if (apex.distance < distance_[corner]) {
+      crossing.apex_distance = apex.distance;
+      const Vec2 along = -triangle.apex;
+      const Vec2 back = Vec2(apex.x, 0) - triangle.apex;
+      crossing.apex_arrival = {previous, std::atan2(std::max(isopath::cross(along, back), 0.0), along.dot(back))};
+      if (options_.retain) {
+        crossing.apex_root = static_cast<Index>(windows.root[apex.window]);
+        crossing.apex_arrival.error = windows.error[apex.window];
+      }
+    }
+    const auto send = [&](auto&& cross_to, Index leaving, Feeder feeder, std::size_t at_most, Index& reached,
+                          double& least) {
+      const Index entering = waiting_place(leaving);
+      if (entering == no_index || at_most == 0) return;
+      WindowBlock* block = workshop.blocks.take(at_most);
+      block->size = static_cast<Index>(cross_to(windows, n, triangle, apex, side_of_begin, side_of_end,
+                                                workshop.blocks.arrays(block), block->least));
+      if (block->size == 0) return workshop.blocks.give_back(block);
+      reached = entering;
+      least = block->least;
+      put_down(entering, feeder, block);
+    };
+    send(cross_to_left, previous, from_next, apex.n_left, crossing.left, crossing.left_least);
+    send(cross_to_right, next, from_previous, apex.n_right, crossing.right, crossing.right_least);
+  }
+  if (owner != nullptr) workshop.blocks.give_back(owner);
+}
+
+WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n, Index edge,
+                                     Workshop& workshop) const {
+  EdgeEnvelope& envelope = workshop.envelope;
+  envelope.reset(geometry_.length(mesh_.halfedge_of(edge)), snap_width(edge));
+  for (std::size_t i = 0; i < n; ++i) envelope.insert(windows.window(i));
+  envelope.merge(options_.limits);
+  const std::vector<Window>& left = envelope.windows();
+  const WindowArrays to = left.size() <= n ? windows : workshop.scratch(2, left.size());
+  n = left.size();
+  for (std::size_t i = 0; i < n; ++i) to.set(i, left[i]);
+  return to;
+}
+
+void ListPropagation::commit(const Crossing& crossing) {
+  if (crossing.apex_distance < infinity) {
+    offer_vertex(mesh_.from(TriangleMesh::prev(crossing.halfedge)), crossing.apex_distance, crossing.apex_root,
+                 crossing.apex_arrival);
+  }
+  if (crossing.left != no_index) push_halfedge(crossing.left, crossing.left_least);
+  if (crossing.right != no_index) push_halfedge(crossing.right, crossing.right_least);
+  propagated_ += static_cast<std::size_t>(crossing.n_windows);
+}
+
+void ListPropagation::run_vertices() {
+  active_.clear();
+  for (const Index v : std::exchange(vertices_[bucket_], {})) {
+    if (bucket_of_vertex_[v] != bucket_) continue;
+    bucket_of_vertex_[v] = not_waiting;
+    active_.push_back(v);
+  }
+  share(active_.size(), [&](std::size_t first, std::size_t past) {
+    Workshop& workshop = workshops_.local();
+    for (std::size_t i = first; i < past; ++i) send_fan(active_[i], workshop);
+  });
+  for (const Index v : active_) {
+    relax_edges(v);
+    Index h = mesh_.outgoing(v);
+    do {
+      const Index t = waiting_place(TriangleMesh::next(h));
+      if (t != no_index && waiting_[3 * static_cast<std::size_t>(t) + from_corner] != nullptr)
+        push_halfedge(t, waiting_[3 * static_cast<std::size_t>(t) + from_corner]->least);
+      h = mesh_.next_outgoing(h);
+    } while (h != no_index && h != mesh_.outgoing(v));
+  }
+}
+
+void ListPropagation::run_lists() {
+  active_.clear();
+  for (const Index h : std::exchange(halfedges_[bucket_], {})) {
+    if (bucket_of_halfedge_[h] != bucket_) continue;
+    bucket_of_halfedge_[h] = not_waiting;
+    active_.push_back(h);
+  }
+  crossings_.resize(active_.size());
+  for (std::size_t i = 0; i < active_.size(); ++i) take_lists(active_[i], crossings_[i]);
+  share(active_.size(), [&](std::size_t first, std::size_t past) {
+    Workshop& workshop = workshops_.local();
+    for (std::size_t i = first; i < past; ++i) cross(crossings_[i], workshop);
+  });
+  for (const Crossing& crossing : crossings_) commit(crossing);
+  lists_ += crossings_.size();
+}
+
+void ListPropagation::run(double stop_distance, Progress& progress) {
+  for (bucket_ = 0; bucket_ * bucket_width_ <= stop_distance; ++bucket_) {
+    const auto past = static_cast<Index>(std::max(halfedges_.size(), vertices_.size()));
+    if (bucket_ >= past) break;
+    halfedges_.resize(past);
+    vertices_.resize(past);
+    while (!vertices_[bucket_].empty() || !halfedges_[bucket_].empty()) {
+      progress.checkpoint();
+      if (!vertices_[bucket_].empty()) run_vertices();
+      if (!halfedges_[bucket_].empty()) run_lists();
+      ++rounds_;
+    }
+  }
+  progress.at(1);
+}
+
+}  // namespace isopath

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/field/edge_envelope.h"
+#include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/list_step.h"
+#include "isopath/field/source_fronts.h"
+#include "isopath/field/window_list.h"
+
+namespace isopath {
+
+/// Directions, from a half-edge counter-clockwise, in which its tail sends a fan into its face; none when low > high.
+struct FanArc {
+  double low = infinity;
+  double high = -infinity;
+};
+
+/// Exact distances, by whole lists of windows that cross triangles (Qin et al. 2016), in rounds.
+///
+/// Lists and vertices wait in buckets by their least distance. A round takes all of the nearest bucket: vertices hand
+/// their distance on along their edges and send out fans, lists are trimmed and cross their triangle, in parallel. What
+/// they found is put down afterwards in a fixed order; so the result does not depend on the number of threads. What is
+/// put down may belong into the same bucket again, and a vertex may improve after it sent its fan (label correcting):
+/// it then sends another. Nothing is dropped but rays that are longer than a way that is known; the shortest ways stay.
+class ListPropagation {
+ public:
+  struct Options {
+    bool retain = false;  ///< keep the windows of every edge
+    MergeLimits limits;
+  };
+  ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                  const Options& options);
+
+  void run(double stop_distance, Progress& progress);
+
+  /// Windows side by side, edge after edge: those of edge e from first[e] up to first[e + 1].
+  struct RetainedWindows {
+    std::vector<Window> windows;
+    std::vector<std::size_t> first;
+  };
+  /// The lower envelope on every edge of all that was propagated; once, after run().
+  RetainedWindows take_windows(Progress& progress);
+
+  std::vector<double>& vertex_distances() { return distance_; }
+  std::vector<Index>& vertex_roots() { return root_; }
+  /// Per half-edge.
+  std::vector<FanArc>& fans() { return fans_; }
+  std::size_t propagated() const { return propagated_; }
+  std::size_t lists() const { return lists_; }
+  std::size_t rounds() const { return rounds_; }
+  std::size_t window_bytes() const;
+
+ private:
+  /// How the shortest way reaches a vertex: the way back turns by `turn` counter-clockwise from an outgoing half-edge.
+  struct Arrival {
+    Index halfedge = no_index;
+    double turn = 0;
+    double error = 0;  ///< most that the distance is off, by merging windows
+  };
+  /// A list that crossed, with its windows behind it in memory.
+  struct KeptList {
+    KeptList* next;
+    std::size_t size;
+  };
+  /// One list on its way through a triangle, and what it found there.
+  struct Crossing {
+    Index halfedge = no_index;
+    Index left = no_index;  ///< half-edge that got children, if any
+    Index right = no_index;
+    Index n_windows = 0;
+    double left_least = infinity;
+    double right_least = infinity;
+    double apex_distance = infinity;
+    Index apex_root = no_index;
+    Arrival apex_arrival;
+    WindowBlock* lists[3] = {nullptr, nullptr, nullptr};
+  };
+  /// What a thread works with.
+  struct Workshop {
+    explicit Workshop(bool is_tagged) : blocks(is_tagged), tagged(is_tagged) {}
+
+    WindowArrays scratch(int which, std::size_t n);
+    KeptList* keep(const WindowArrays& windows, std::size_t n);
+
+    WindowBlocks blocks;
+    bool tagged;
+    EdgeEnvelope envelope;
+    std::vector<double> arrays[3];
+    std::vector<double> sides[2];
+    std::vector<std::unique_ptr<double[]>> kept;
+    double* fresh = nullptr;
+    std::size_t left = 0;
+  };
+  /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
+  enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };
+
+  void start(const SourceFronts& fronts);
+  void push_halfedge(Index halfedge, double least);
+  void offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival);
+  /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
+  /// when windows are retained.
+  Index waiting_place(Index leaving) const;
+
+  void relax_edges(Index vertex);
+  void send_fan(Index vertex, Workshop& workshop);
+  void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
+  double arrival_angle(Index vertex) const;
+
+  void take_lists(Index halfedge, Crossing& crossing);
+  /// The waiting lists as one, sorted; in one of their blocks when there is only one, otherwise in a scratch.
+  WindowArrays gather(Crossing& crossing, Workshop& workshop, std::size_t& n, WindowBlock*& owner) const;
+  void cross(Crossing& crossing, Workshop& workshop);
+  /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
+  /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
+  WindowArrays merged(const WindowArrays& windows, std::size_t& n, Index edge, Workshop& workshop) const;
+  void commit(const Crossing& crossing);
+
+  void run_vertices();
+  void run_lists();
+
+  void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
+  double snap_width(Index edge) const;
+
+  const TriangleMesh& mesh_;
+  const IntrinsicGeometry& geometry_;
+  Options options_;
+  std::vector<double> distance_;
+  std::vector<Index> root_;
+  std::vector<Arrival> arrival_;
+  std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none
+  std::vector<std::vector<BlockedArc>> source_arcs_;
+  std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained
+  std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained
+  std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
+  std::vector<WindowBlock*> waiting_;                   ///< three per half-edge
+  std::vector<Index> bucket_of_halfedge_;
+  std::vector<Index> bucket_of_vertex_;
+  std::vector<std::vector<Index>> halfedges_;  ///< by bucket
+  std::vector<std::vector<Index>> vertices_;
+  std::vector<Index> active_;
+  std::vector<Crossing> crossings_;
+  tbb::enumerable_thread_specific<Workshop> workshops_;
+  Index bucket_ = 0;
+  double bucket_width_ = 1;
+  double margin_ = 0;
+  std::size_t propagated_ = 0;
+  std::size_t lists_ = 0;
+  std::size_t rounds_ = 0;
+};
+
+}  // namespace isopath

@@ -1,0 +1,104 @@
+// What a propagation leaves on the edges, as the lower envelope of all fronts that came by.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "isopath/field/edge_envelope.h"
+#include "isopath/field/list_propagation.h"
+
+namespace isopath {
+namespace {
+
+constexpr Index edges_at_a_time = 1024;
+
+Window along_edge(double source, double length, double distance, double error, Index root) {
+  Window window;
+  window.end = length;
+  window.source = Vec2(source, 0);
+  window.offset = distance;
+  window.error = error;
+  window.root = root;
+  window.filler = true;
+  return window;
+}
+
+}  // namespace
+
+double ListPropagation::snap_width(Index edge) const {
+  // Relative to the edge, and not below what coordinates of this model can resolve.
+  const double length = geometry_.length(mesh_.halfedge_of(edge));
+  return std::min(0.25 * length, std::max(1e-11 * length, 2e-14 * geometry_.size()));
+}
+
+void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const {
+  const Index canonical = mesh_.halfedge_of(edge);
+  const double length = geometry_.length(canonical);
+  all.clear();
+  const auto collect = [&](Index h, bool flip, Index enters) {
+    for (const KeptList* list = kept_[h]; list != nullptr; list = list->next) {
+      auto* first = const_cast<double*>(reinterpret_cast<const double*>(list + 1));
+      const WindowArrays windows = WindowArrays::at(first, list->size, true);
+      for (std::size_t i = 0; i < list->size; ++i) {
+        Window w = windows.window(i);
+        if (flip) w = w.flipped(length);
+        w.halfedge = enters;
+        all.push_back(w);
+      }
+    }
+  };
+  const Index twin = mesh_.twin(canonical);
+  collect(canonical, twin == no_index, twin == no_index ? no_index : canonical);
+  if (twin != no_index) collect(twin, true, twin);
+  // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
+  std::stable_sort(all.begin(), all.end(), [](const Window& a, const Window& b) {
+    return a.kind != b.kind ? a.kind == Window::Kind::line : a.begin < b.begin;
+  });
+  envelope.reset(length, snap_width(edge));
+  for (const Window& window : all) envelope.insert(window);
+
+  const auto by_edge = [](const auto& source, Index e) { return source.first < e; };
+  for (auto s = std::lower_bound(edge_sources_.begin(), edge_sources_.end(), edge, by_edge);
+       s != edge_sources_.end() && s->first == edge; ++s) {
+    envelope.insert(s->second);
+  }
+  const auto follow_from = [&](Index vertex, double x) {
+    if (distance_[vertex] == infinity) return;
+    envelope.insert(along_edge(x, length, distance_[vertex], arrival_[vertex].error, root_[vertex]));
+  };
+  follow_from(mesh_.from(canonical), 0);
+  follow_from(mesh_.to(canonical), length);
+  envelope.merge(options_.limits);
+}
+
+ListPropagation::RetainedWindows ListPropagation::take_windows(Progress& progress) {
+  const Index n_parts = (mesh_.n_edges() + edges_at_a_time - 1) / edges_at_a_time;
+  std::vector<std::vector<Window>> parts(n_parts);
+  RetainedWindows retained;
+  retained.first.assign(mesh_.n_edges() + 1, 0);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, n_parts, 1), [&](const tbb::blocked_range<Index>& range) {
+    EdgeEnvelope envelope;
+    std::vector<Window> all;
+    for (Index part = range.begin(); part < range.end(); ++part) {
+      progress.checkpoint();
+      const Index past = std::min(mesh_.n_edges(), (part + 1) * edges_at_a_time);
+      for (Index edge = part * edges_at_a_time; edge < past; ++edge) {
+        add_kept(envelope, edge, all);
+        parts[part].insert(parts[part].end(), envelope.windows().begin(), envelope.windows().end());
+        retained.first[edge + 1] = envelope.windows().size();
+      }
+      parts[part].shrink_to_fit();
+    }
+  });
+  workshops_.clear();
+  kept_ = {};
+  for (Index edge = 0; edge < mesh_.n_edges(); ++edge) retained.first[edge + 1] += retained.first[edge];
+  retained.windows.reserve(retained.first.back());
+  for (std::vector<Window>& part : parts) {
+    retained.windows.insert(retained.windows.end(), part.begin(), part.end());
+    part = {};
+  }
+  return retained;
+}
+
+}  // namespace isopath

@@ -1,0 +1,105 @@
+#include "isopath/field/window_list.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <new>
+
+namespace isopath {
+namespace {
+
+constexpr std::size_t chunk_doubles = 1 << 16;
+constexpr std::size_t header_doubles = 8;  // keeps the arrays on their own cache lines
+static_assert(sizeof(WindowBlock) <= header_doubles * sizeof(double));
+
+/// Four classes to a doubling waste an eighth on average.
+std::size_t class_of(std::size_t lanes) {
+  if (lanes <= 4) return lanes - 1;
+  const auto octave = static_cast<std::size_t>(std::bit_width(lanes - 1)) - 3;
+  return 4 * octave + ((lanes - 1) >> octave);
+}
+std::size_t lanes_of(std::size_t size_class) {
+  if (size_class < 4) return size_class + 1;
+  const std::size_t octave = size_class / 4 - 1;
+  return (size_class - 4 * octave + 1) << octave;
+}
+
+}  // namespace
+
+WindowArrays WindowArrays::at(double* first, std::size_t capacity, bool tagged) {
+  WindowArrays arrays{first, first + capacity, first + 2 * capacity, first + 3 * capacity, first + 4 * capacity};
+  if (tagged) {
+    arrays.root = first + 5 * capacity;
+    arrays.error = first + 6 * capacity;
+  }
+  return arrays;
+}
+
+void WindowArrays::copy(std::size_t n, const WindowArrays& to) const {
+  const std::size_t bytes = n * sizeof(double);
+  std::memcpy(to.begin, begin, bytes);
+  std::memcpy(to.end, end, bytes);
+  std::memcpy(to.x, x, bytes);
+  std::memcpy(to.y, y, bytes);
+  std::memcpy(to.offset, offset, bytes);
+  if (root == nullptr) return;
+  std::memcpy(to.root, root, bytes);
+  std::memcpy(to.error, error, bytes);
+}
+
+Window WindowArrays::window(std::size_t i) const {
+  Window w;
+  w.begin = begin[i];
+  w.end = end[i];
+  w.source = Vec2(x[i], y[i]);
+  w.offset = offset[i];
+  w.kind = y[i] > 0 ? Window::Kind::line : Window::Kind::point;
+  if (root == nullptr) return w;
+  w.root = static_cast<Index>(root[i]);
+  w.error = error[i];
+  return w;
+}
+
+void WindowArrays::set(std::size_t i, const Window& w) const {
+  begin[i] = w.begin;
+  end[i] = w.end;
+  x[i] = w.source.x();
+  y[i] = w.kind == Window::Kind::line ? w.source.y() : std::min(w.source.y(), 0.0);
+  offset[i] = w.offset;
+  if (root == nullptr) return;
+  root[i] = w.root;
+  error[i] = w.error;
+}
+
+double* WindowBlock::storage() { return reinterpret_cast<double*>(this) + header_doubles; }
+
+WindowBlock* WindowBlocks::take(std::size_t size) {
+  const std::size_t size_class = class_of((size + 2 * WindowBlock::lanes - 1) / WindowBlock::lanes);
+  if (size_class >= free_.size()) free_.resize(size_class + 1);
+  if (!free_[size_class].empty()) {
+    WindowBlock* block = free_[size_class].back();
+    free_[size_class].pop_back();
+    return block;
+  }
+  const std::size_t capacity = lanes_of(size_class) * WindowBlock::lanes;
+  const std::size_t needed = header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
+  if (left_ < needed) {
+    left_ = std::max(chunk_doubles, needed);
+    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_));
+    fresh_ = chunks_.back().get();
+    bytes_ += left_ * sizeof(double);
+  }
+  auto* block = new (fresh_) WindowBlock;
+  block->capacity = static_cast<Index>(capacity);
+  fresh_ += needed;
+  left_ -= needed;
+  return block;
+}
+
+void WindowBlocks::give_back(WindowBlock* block) {
+  const std::size_t size_class = class_of(static_cast<std::size_t>(block->capacity) / WindowBlock::lanes);
+  if (size_class >= free_.size()) free_.resize(size_class + 1);
+  free_[size_class].push_back(block);
+}
+
+}  // namespace isopath

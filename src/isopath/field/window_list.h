@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "isopath/field/window.h"
+
+namespace isopath {
+
+/// Windows of one half-edge as a structure of arrays, sorted by `begin`, in the frame of the half-edge whose face they
+/// enter: the front comes from y <= 0.
+///
+/// A circle has its unfolded pseudo-source in (x, y), y <= 0, and in `offset` the distance travelled there. A straight
+/// front has its unit direction in (x, y), y > 0, and in `offset` its distance at the half-edge's origin.
+struct WindowArrays {
+  double* begin = nullptr;
+  double* end = nullptr;
+  double* x = nullptr;
+  double* y = nullptr;
+  double* offset = nullptr;
+  /// Source element, and most that the distances are off by merging; null where only distances are asked for.
+  double* root = nullptr;
+  double* error = nullptr;
+
+  static constexpr int count = 5;
+  static constexpr int tagged_count = 7;
+  /// Consecutive arrays of this capacity.
+  static WindowArrays at(double* first, std::size_t capacity, bool tagged);
+  /// The arrays from element i on.
+  WindowArrays operator+(std::size_t i) const {
+    return {begin + i, end + i, x + i, y + i, offset + i, root ? root + i : nullptr, error ? error + i : nullptr};
+  }
+  /// One window, as it stands in the half-edge's frame; without half-edge.
+  Window window(std::size_t i) const;
+  void set(std::size_t i, const Window& window) const;
+  /// Copies n windows to `to`.
+  void copy(std::size_t n, const WindowArrays& to) const;
+};
+
+/// A list of windows on its way from one triangle to the next.
+struct WindowBlock {
+  WindowBlock* next = nullptr;  ///< an older list that waits at the same half-edge
+  double least = infinity;      ///< bound on the distances of its windows from below
+  Index size = 0;
+  Index capacity = 0;  ///< a multiple of `lanes`; the last `lanes` places are for vector instructions to scribble on
+  static constexpr Index lanes = 8;
+
+  double* storage();
+};
+
+/// Blocks by size, used again once they are given back. One thread takes and gives; a block may end up with another
+/// thread than it came from.
+class WindowBlocks {
+ public:
+  explicit WindowBlocks(bool tagged) : tagged_(tagged) {}
+
+  /// A block for at least `size` windows.
+  WindowBlock* take(std::size_t size);
+  void give_back(WindowBlock* block);
+  WindowArrays arrays(WindowBlock* block) const {
+    return WindowArrays::at(block->storage(), static_cast<std::size_t>(block->capacity), tagged_);
+  }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  bool tagged_;
+  std::vector<std::vector<WindowBlock*>> free_;  ///< by size class
+  std::vector<std::unique_ptr<double[]>> chunks_;
+  double* fresh_ = nullptr;
+  std::size_t left_ = 0;  ///< doubles from fresh_ on
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace isopath

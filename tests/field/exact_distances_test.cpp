@@ -1,0 +1,118 @@
+// Distances at the vertices alone: the same as the whole field's, for any number of threads and instruction set.
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <vector>
+
+#include "isopath/core/error.h"
+#include "isopath/field/exact_distances.h"
+#include "isopath/field/exact_field.h"
+#include "support/random_sources.h"
+#include "support/slow_exact.h"
+#include "support/test_meshes.h"
+
+namespace isopath::test {
+namespace {
+
+SourceSet one_vertex(const TriangleMesh& mesh, Index vertex) {
+  SourceSet sources;
+  sources.add_vertex(mesh, vertex);
+  return sources;
+}
+
+void expect_same_as_field(const TriangleMesh& mesh, const SourceSet& sources, double tolerance) {
+  const ExactField field = ExactField::compute(mesh, sources);
+  const std::vector<double> distances = exact_distances(mesh, sources);
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const double expected = field.value_at_vertex(v);
+    if (expected == infinity) {
+      ASSERT_EQ(distances[v], infinity);
+    } else {
+      ASSERT_NEAR(distances[v], expected, tolerance * mesh.size()) << "vertex " << v;
+    }
+  }
+}
+
+TEST(ExactDistances, AreThoseOfTheFieldOnRandomMeshes) {
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh = random_mesh(rng, {.closed = seed % 3 == 0, .holes = seed % 5 == 0});
+    expect_same_as_field(mesh, random_sources(rng, mesh), 1e-9);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(ExactDistances, AreThoseOfTheFieldOnSurfaces) {
+  const TriangleMesh wavy = wavy_sheet(50, 1, 0.1, 6, 5, 1);
+  expect_same_as_field(wavy, one_vertex(wavy, 0), 1e-11);
+  expect_same_as_field(wavy, boundary_source(wavy), 1e-11);
+  const TriangleMesh blade = lofted_blade(8, 100);
+  expect_same_as_field(blade, one_vertex(blade, 0), 1e-11);
+  const TriangleMesh ring = torus(60, 30, 5, 2);
+  expect_same_as_field(ring, one_vertex(ring, 7), 1e-11);
+}
+
+/// Neither ties nor thin windows lose a vertex of a flat grid: where peers fail.
+TEST(ExactDistances, AreStraightOnAFlatRegularGrid) {
+  const TriangleMesh grid = planar_grid(100, 100, 1, 1);
+  for (const Index source : {Index(0), Index(50 * 101 + 50)}) {
+    const std::vector<double> distances = exact_distances(grid, one_vertex(grid, source));
+    for (Index v = 0; v < grid.n_vertices(); ++v)
+      ASSERT_NEAR(distances[v], (grid.position(v) - grid.position(source)).norm(), 1e-13);
+  }
+}
+
+TEST(ExactDistances, DoNotDependOnTheNumberOfThreads) {
+  const TriangleMesh wavy = wavy_sheet(60, 1, 0.1, 6, 5, 2);
+  const auto with_threads = [&](std::size_t n) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+    return exact_distances(wavy, one_vertex(wavy, 100));
+  };
+  const std::vector<double> alone = with_threads(1);
+  for (const std::size_t n : {2, 3, 8}) EXPECT_EQ(with_threads(n), alone) << n << " threads";
+}
+
+TEST(ExactDistances, AreExactUpToTheStopDistance) {
+  const TriangleMesh wavy = wavy_sheet(40, 1, 0.1, 6, 5, 3);
+  const SourceSet source = one_vertex(wavy, 0);
+  const std::vector<double> all = exact_distances(wavy, source);
+  const std::vector<double> near = exact_distances(wavy, source, 0.5);
+  int beyond = 0;
+  for (Index v = 0; v < wavy.n_vertices(); ++v) {
+    if (all[v] <= 0.5) {
+      ASSERT_NEAR(near[v], all[v], 1e-13);
+    }
+    EXPECT_GE(near[v], all[v] - 1e-13);
+    beyond += near[v] == infinity ? 1 : 0;
+  }
+  EXPECT_GT(beyond, wavy.n_vertices() / 4) << "it went on beyond the stop distance";
+}
+
+TEST(ExactDistances, ManySourcesInOneCoarseFaceDoNotMultiply) {
+  // Fronts that overlap on edges without a vertex near them are cut by one another.
+  Rng rng(5);
+  const TriangleMesh block = cube(1, 1);
+  SourceSet sources;
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const double a = unit(rng);
+    const double b = unit(rng) * (1 - a);
+    sources.add_point({static_cast<Index>(i % 3), Vec3(a, b, 1 - a - b)});
+  }
+  expect_same_as_field(block, sources, 1e-12);
+}
+
+TEST(ExactDistances, RefuseAnEmptySourceAndStopOnRequest) {
+  const TriangleMesh grid = planar_grid(4, 4, 1, 1);
+  EXPECT_THROW(exact_distances(grid, SourceSet()), Error);
+  struct Cancelled : Progress {
+    bool cancelled() const override { return true; }
+  } cancelled;
+  EXPECT_THROW(exact_distances(grid, one_vertex(grid, 0), infinity, cancelled), Error);
+}
+
+}  // namespace
+}  // namespace isopath::test
