@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,10 +15,12 @@
 #include "commands.h"
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
+#include "isopath/field/checked_distances.h"
 #include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/fast_marching.h"
 #include "isopath/field/graph_field.h"
+#include "isopath/field/virtual_source.h"
 #include "isopath/mesh/write_mesh.h"
 #include "isopath/mesh/write_vtp.h"
 #include "isopath/plan/make_sources.h"
@@ -28,6 +32,7 @@ namespace {
 struct FieldArguments {
   MeshInput input;
   std::string method = "exact";
+  std::optional<double> max_error;
   std::string output;
   std::string path_to;
 };
@@ -97,9 +102,14 @@ nlohmann::ordered_json way_json(const Way& way) {
 }
 
 void check(const FieldArguments& arguments) {
-  if (arguments.method != "exact" && arguments.method != "fast-marching" && arguments.method != "graph") {
-    refuse_value("option --method", arguments.method, "exact, fast-marching, graph");
+  constexpr std::array methods{"exact", "virtual-source", "fast-marching", "graph"};
+  if (std::find(methods.begin(), methods.end(), arguments.method) == methods.end()) {
+    refuse_value("option --method", arguments.method, "exact, virtual-source, fast-marching, graph");
   }
+  if (arguments.max_error && arguments.method != "virtual-source") {
+    refuse_value("option --method", arguments.method, "virtual-source, since --max-error checks its distances");
+  }
+  if (arguments.max_error) CheckedDistancesOptions{.max_error = *arguments.max_error}.validate();
   if (arguments.method != "exact" && !arguments.path_to.empty()) {
     refuse_value("option --method", arguments.method, "exact, since --path-to traces shortest paths through windows");
   }
@@ -114,18 +124,28 @@ void check(const FieldArguments& arguments) {
 
 struct Distances {
   std::vector<double> at_vertices;
-  Way way;  ///< empty unless it was asked for
+  Way way;                                 ///< empty unless it was asked for
+  nlohmann::ordered_json check = nullptr;  ///< of the error asked for
 };
 
 Distances distances_of(const FieldArguments& arguments, const Part& part, const SourceSet& sources,
                        Progress& progress) {
-  if (arguments.method == "fast-marching") return {fast_marching_distances(part.mesh, sources, progress), {}};
+  if (arguments.method == "fast-marching") return {fast_marching_distances(part.mesh, sources, progress), {}, nullptr};
   if (arguments.method == "graph") {
-    return {graph_distances(part.mesh, sources, {.virtual_vertices = 0, .across_pairs = true}, progress), {}};
+    return {graph_distances(part.mesh, sources, {.virtual_vertices = 0, .across_pairs = true}, progress), {}, nullptr};
   }
-  if (arguments.path_to.empty()) return {exact_distances(part.mesh, sources, infinity, progress), {}};
+  if (arguments.method == "virtual-source" && arguments.max_error) {
+    CheckedDistances checked = checked_distances(part.mesh, sources, {.max_error = *arguments.max_error}, progress);
+    return {
+        std::move(checked.at_vertices),
+        {},
+        {{"max_error", *arguments.max_error}, {"estimated_error", checked.estimated_error}, {"exact", checked.exact}}};
+  }
+  if (arguments.method == "virtual-source")
+    return {virtual_source_distances(part.mesh, sources, progress), {}, nullptr};
+  if (arguments.path_to.empty()) return {exact_distances(part.mesh, sources, infinity, progress), {}, nullptr};
   const ExactField field = ExactField::compute(part.mesh, sources, {}, progress);
-  Distances found{{field.vertex_distances().begin(), field.vertex_distances().end()}, {}};
+  Distances found{{field.vertex_distances().begin(), field.vertex_distances().end()}, {}, nullptr};
   found.way = trace(part, field, arguments.path_to);
   return found;
 }
@@ -155,6 +175,7 @@ void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
                                    {"unreached_vertices", unreached},
                                    {"output", arguments.output},
                                    {"warnings", part.warnings}};
+  if (!found.check.is_null()) report["check"] = found.check;
   if (!way.points.empty()) report["path"] = way_json(way);
   print(report.dump(2) + "\n");
 }
@@ -168,13 +189,19 @@ void add_field(CLI::App& app, CommonFlags& flags, Action& action) {
   add_mesh(*command, arguments->input);
   add_sources(*command, arguments->input.sources);
   command
-      ->add_option("--method", arguments->method,
-                   "exact: true distances on the polyhedral surface;\n"
-                   "fast-marching: error about h (1 + ln(d/h)) / 8 at distance d for edges of length h (an estimate\n"
-                   "for well-shaped triangles), to either side;\n"
-                   "graph: along edges and across pairs of faces, never too short, and too long by no more than h\n"
-                   "for every edge that the shortest path crosses")
+      ->add_option(
+          "--method", arguments->method,
+          "exact: true distances on the polyhedral surface;\n"
+          "virtual-source: the fastest; mean relative error of 0.02 to 0.4 % as measured, single vertices up to\n"
+          "some percent, to either side and without a bound unless --max-error is given;\n"
+          "fast-marching: error about h (1 + ln(d/h)) / 8 at distance d for edges of length h (an estimate\n"
+          "for well-shaped triangles), to either side;\n"
+          "graph: along edges and across pairs of faces, never too short, and too long by no more than h\n"
+          "for every edge that the shortest path crosses")
       ->capture_default_str();
+  command->add_option("--max-error", arguments->max_error,
+                      "With --method virtual-source: compare the quarter of the vertices nearest to the sources with\n"
+                      "exact distances; if one is off by more than this share, compute all from the exact field");
   command->add_option("-o,--output", arguments->output,
                       ".csv: one value a line in the vertex order of the file; .ply, .vtp: the mesh with 'distance'");
   command->add_option(

@@ -131,7 +131,12 @@ class Field(Program):
             self.assertAlmostEqual(d, x, delta=1e-10)
         exact, marched, graph = (
             self.distances("--source", "vertex:0", "--method", method) for method in ("exact", "fast-marching", "graph"))
+        virtual = self.distances("--source", "vertex:0", "--method", "virtual-source")
+        checked = self.distances("--source", "vertex:0", "--method", "virtual-source", "--max-error", "1e-9")
         longest = 10 * math.sqrt(2)
+        for true, v, c in zip(exact, virtual, checked):
+            self.assertAlmostEqual(v, true, delta=1e-3 * true)
+            self.assertAlmostEqual(c, true, delta=2e-9 * true)
         for true, m, g in zip(exact, marched, graph):
             self.assertGreaterEqual(g, true - 1e-9)
             self.assertLessEqual(abs(m - true), longest)

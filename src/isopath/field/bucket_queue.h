@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace isopath {
+
+/// A queue of items ordered by key up to the width of a bucket; within a bucket first in, first out. Keys behind the
+/// bucket being emptied count as belonging to it, keys beyond the horizon to the last bucket in sight: the order is not
+/// strict, and whoever uses it must bear items that come too early or again.
+class BucketQueue {
+ public:
+  explicit BucketQueue(float width) : per_width_(1 / width), buckets_(n_buckets) {}
+
+  void push(float key, std::uint32_t item) {
+    const float bucket = std::min(key * per_width_ - first_, static_cast<float>(n_buckets - 1));
+    const auto ahead = bucket > 0 ? static_cast<std::size_t>(bucket) : 0;
+    buckets_[(current_ + ahead) % n_buckets].push_back(item);
+    ++size_;
+  }
+  /// Whether a key lies in the bucket being emptied or before it.
+  bool due(float key) const { return key * per_width_ - first_ < 1; }
+  bool empty() const { return size_ == 0; }
+  /// The item that comes `n` after the next, if the bucket being emptied reaches so far; else the last one that it
+  /// holds. For a look ahead only, and not on an empty queue.
+  std::uint32_t ahead(std::size_t n) const {
+    const std::vector<std::uint32_t>& bucket = buckets_[current_];
+    return bucket[std::min(next_ + n, bucket.size() - 1)];
+  }
+  /// Removes the next item. The queue must not be empty.
+  std::uint32_t pop() {
+    while (next_ == buckets_[current_].size()) advance();
+    --size_;
+    return buckets_[current_][next_++];
+  }
+
+ private:
+  static constexpr std::size_t n_buckets = 4096;
+
+  void advance() {
+    buckets_[current_].clear();
+    next_ = 0;
+    current_ = (current_ + 1) % n_buckets;
+    first_ += 1;
+  }
+
+  float per_width_;
+  float first_ = 0;  ///< number of the bucket being emptied, counted from key 0
+  std::size_t current_ = 0;
+  std::size_t next_ = 0;
+  std::size_t size_ = 0;
+  std::vector<std::vector<std::uint32_t>> buckets_;
+};
+
+}  // namespace isopath

@@ -1,0 +1,254 @@
+#include "isopath/field/virtual_source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "isopath/core/error.h"
+#include "isopath/field/checked_distances.h"
+#include "isopath/field/exact_field.h"
+#include "isopath/field/graph_field.h"
+#include "support/random_sources.h"
+#include "support/test_meshes.h"
+
+namespace isopath::test {
+namespace {
+
+/// Rounding of single precision over the unfoldings of these meshes, relative to the distance.
+constexpr double rounding = 2e-5;
+
+SourceSet vertex_source(const TriangleMesh& mesh, Index vertex) {
+  SourceSet source;
+  source.add_vertex(mesh, vertex);
+  return source;
+}
+
+struct RelativeErrors {
+  double mean = 0;
+  double lowest = 0;
+  double highest = 0;
+};
+
+RelativeErrors errors_of(const std::vector<double>& distance, std::span<const double> truth) {
+  RelativeErrors errors;
+  std::size_t n = 0;
+  for (std::size_t v = 0; v < distance.size(); ++v) {
+    EXPECT_EQ(distance[v] == infinity, truth[v] == infinity) << v;
+    if (!(truth[v] > 0) || truth[v] == infinity) continue;
+    const double error = (distance[v] - truth[v]) / truth[v];
+    errors.mean += std::abs(error);
+    errors.lowest = std::min(errors.lowest, error);
+    errors.highest = std::max(errors.highest, error);
+    ++n;
+  }
+  errors.mean /= static_cast<double>(std::max<std::size_t>(n, 1));
+  return errors;
+}
+
+RelativeErrors errors_against_exact(const TriangleMesh& mesh, const SourceSet& sources) {
+  const ExactField exact = ExactField::compute(mesh, sources, {.accuracy = 1e-7 * mesh.size()});
+  return errors_of(virtual_source_distances(mesh, sources), exact.vertex_distances());
+}
+
+TEST(VirtualSource, IsNeverTooShortAndAlmostAlwaysExactFromAPointOnAConvexPlane) {
+  // A half-edge keeps one beam; where it would have needed two, some vertices see no light and the way bends.
+  int exact = 0;
+  const int n_cases = 60;
+  for (std::uint64_t seed = 0; seed < n_cases; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh = planar_grid(23, 17, random_real(rng, 5, 60), 17, {.jitter = 0.24, .seed = seed});
+    const SurfacePoint start = random_supported_point(rng, mesh);
+    SourceSet source;
+    source.add_point(start);
+    const auto distance = virtual_source_distances(mesh, source);
+    double worst = 0;
+    for (Index v = 0; v < mesh.n_vertices(); ++v) {
+      const double truth = (mesh.position(v) - position_of(mesh, start)).norm();
+      EXPECT_GE(distance[v], truth - rounding * mesh.size());
+      worst = std::max(worst, distance[v] - truth);
+    }
+    EXPECT_LT(worst, 0.01 * mesh.size());
+    exact += worst < rounding * mesh.size() ? 1 : 0;
+  }
+  EXPECT_GE(exact, 0.95 * n_cases);
+}
+
+TEST(VirtualSource, BringsStraightFrontsOverAPlane) {
+  const TriangleMesh mesh = planar_grid(13, 9, 13, 9, {.jitter = 0.24});
+  SourceSet left;
+  std::vector<SurfacePoint> line;
+  for (Index j = 0; j <= 9; ++j) line.push_back(point_at_vertex(mesh, j * 14));
+  left.add_polyline(mesh, line, false);
+  const auto distance = virtual_source_distances(mesh, left);
+  // The nearest segment's beam may have left a half-edge to that of a neighbour, whose end is a little farther away.
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    EXPECT_GE(distance[v], mesh.position(v).x() - rounding * 13);
+    EXPECT_LE(distance[v], mesh.position(v).x() * 1.002 + rounding * 13);
+  }
+}
+
+TEST(VirtualSource, BendsAtReflexCorners) {
+  const int n = 12;
+  const TriangleMesh mesh = l_shape(n);
+  Index start = 0;
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    if ((mesh.position(v) - Vec3(2 * n, 2, 0)).norm() < 1e-9) start = v;
+  }
+  const auto distance = virtual_source_distances(mesh, vertex_source(mesh, start));
+  const Vec3 s = mesh.position(start);
+  const Vec3 corner(n, n, 0);
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const Vec3 p = mesh.position(v);
+    const bool in_shadow = p.x() <= n && (p.y() - n) * n > (n - 2) * (n - p.x());
+    const double truth = in_shadow ? (s - corner).norm() + (p - corner).norm() : (p - s).norm();
+    EXPECT_GE(distance[v], truth - rounding * mesh.size()) << p.transpose();
+    // beside the edge of the shadow one of two fronts may lose half-edges to the other
+    EXPECT_LE(distance[v], 1.02 * truth + rounding * mesh.size()) << p.transpose();
+  }
+}
+
+TEST(VirtualSource, IsHardlyEverTooShortOnFlatParts) {
+  // Ways are real ones, but for light that joins over narrow shadows.
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh = seed % 3 == 0   ? notched_square(11)
+                              : seed % 3 == 1 ? l_shape(8)
+                                              : planar_star(static_cast<int>(3 + seed % 7), 5, 1);
+    const SourceSet sources = random_sources(rng, mesh);
+    const RelativeErrors errors = errors_against_exact(mesh, sources);
+    EXPECT_GT(errors.lowest, -5e-3);
+  }
+}
+
+TEST(VirtualSource, UnfoldsACylinder) {
+  const int n = 96;
+  const double radius = 2;
+  const TriangleMesh mesh = open_cylinder(n, 40, radius, 6);
+  const auto distance = virtual_source_distances(mesh, vertex_source(mesh, 0));
+  const double chord = 2 * radius * std::sin(std::numbers::pi / n);
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const int side = static_cast<int>(v) % n;
+    const double around = chord * std::min(side, n - side);
+    const double truth = std::hypot(around, mesh.position(v).z() - mesh.position(0).z());
+    EXPECT_NEAR(distance[v], truth, 1e-3 * truth + rounding) << v;
+  }
+}
+
+TEST(VirtualSource, UnfoldsACone) {
+  const int n = 64;
+  const int rings = 24;
+  const TriangleMesh mesh = open_cone(n, rings, 3, 5);
+  const Index start = 1 + (rings - 1) * n;
+  const double slant = (mesh.position(start) - mesh.position(0)).norm();
+  const auto distance = virtual_source_distances(mesh, vertex_source(mesh, start));
+  for (Index v = 1; v < mesh.n_vertices(); ++v) {
+    const int side = static_cast<int>(v - 1) % n;
+    const double turn = cone_angle(n, 3, 5) * std::min(side, n - side) / n;
+    const double along = (mesh.position(v) - mesh.position(0)).norm();
+    // the base of the unfolded cone is convex, and its apex no saddle: the straight line, or over the apex
+    const double truth = turn < std::numbers::pi
+                             ? std::sqrt(slant * slant + along * along - 2 * slant * along * std::cos(turn))
+                             : slant + along;
+    // between neighbours on the rim the way runs along chords, which the line through the base cuts off
+    EXPECT_NEAR(distance[v], truth, 0.003 * truth + rounding) << v;
+  }
+}
+
+TEST(VirtualSource, MeanErrorOnWavySheetsIsBelowAQuarterOfAPercent) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = wavy_sheet(70, 1, 0.1, 6, 5, seed);
+    Rng rng(seed);
+    EXPECT_LT(errors_against_exact(mesh, vertex_source(mesh, random_index(rng, mesh.n_vertices()))).mean, 0.0025);
+    EXPECT_LT(errors_against_exact(mesh, boundary_source(mesh)).mean, 0.0025);
+  }
+}
+
+TEST(VirtualSource, StaysAccurateOnThinTriangles) {
+  const TriangleMesh mesh = lofted_blade(40, 40);
+  EXPECT_LT(errors_against_exact(mesh, vertex_source(mesh, mesh.n_vertices() / 2)).mean, 0.003);
+  EXPECT_LT(errors_against_exact(mesh, boundary_source(mesh)).mean, 0.003);
+}
+
+TEST(VirtualSource, ReachesWhatEdgesReachAndIsNeverLongerThanTheWayAlongThem) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh =
+        random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
+    const SourceSet sources = random_sources(rng, mesh);
+    const auto distance = virtual_source_distances(mesh, sources);
+    const auto along_edges = graph_distances(mesh, sources);
+    for (Index v = 0; v < mesh.n_vertices(); ++v) {
+      EXPECT_GE(distance[v], 0);
+      EXPECT_LE(distance[v], along_edges[v] * (1 + rounding));
+      EXPECT_EQ(distance[v] == infinity, along_edges[v] == infinity);
+    }
+  }
+}
+
+TEST(VirtualSource, FollowsTheMesh) {
+  const TriangleMesh mesh = wavy_sheet(24, 1, 0.1, 6, 5, 4);
+  const auto distances = [](const TriangleMesh& m) {
+    SourceSet source = boundary_source(m);
+    source.add_vertex(m, 300);
+    return virtual_source_distances(m, source);
+  };
+  const auto reference = distances(mesh);
+  for (const double factor : {std::ldexp(1.0, -40), std::ldexp(1.0, 40)}) {
+    const auto other = distances(scaled(mesh, factor));
+    for (Index v = 0; v < mesh.n_vertices(); ++v) EXPECT_DOUBLE_EQ(other[v], factor * reference[v]);
+  }
+  const auto other = distances(moved(mesh, Vec3(1, 2, 3), 0.7, Vec3(5, -4, 3)));
+  for (Index v = 0; v < mesh.n_vertices(); ++v) EXPECT_NEAR(other[v], reference[v], 1e-3 * mesh.size());
+}
+
+TEST(VirtualSource, IsTheSameFromRunToRun) {
+  const TriangleMesh mesh = wavy_sheet(30, 1, 0.1, 6, 5, 4);
+  EXPECT_EQ(virtual_source_distances(mesh, boundary_source(mesh)),
+            virtual_source_distances(mesh, boundary_source(mesh)));
+}
+
+class Cancelled : public Progress {
+  bool cancelled() const override { return true; }
+};
+
+TEST(VirtualSource, StopsOnRequest) {
+  const TriangleMesh mesh = tetrahedron(1);
+  Cancelled progress;
+  EXPECT_THROW(virtual_source_distances(mesh, vertex_source(mesh, 0), progress), Error);
+}
+
+TEST(VirtualSource, SaysWhatIsWrong) { EXPECT_THROW(virtual_source_distances(tetrahedron(1), SourceSet{}), Error); }
+
+TEST(CheckedDistances, KeepsToTheBoundEitherWay) {
+  const TriangleMesh mesh = wavy_sheet(30, 1, 0.1, 6, 5, 1);
+  const SourceSet source = vertex_source(mesh, 17);
+  const ExactField exact = ExactField::compute(mesh, source);
+  for (const double bound : {1e-6, 0.5}) {
+    const CheckedDistances found = checked_distances(mesh, source, {.max_error = bound, .sample = 1});
+    const RelativeErrors errors = errors_of(found.at_vertices, exact.vertex_distances());
+    EXPECT_LE(std::max(errors.highest, -errors.lowest), bound * (1 + 1e-6));
+    EXPECT_EQ(found.exact, found.estimated_error > bound);
+  }
+  EXPECT_TRUE(checked_distances(mesh, source, {.max_error = 1e-6}).exact);
+  EXPECT_FALSE(checked_distances(mesh, source, {.max_error = 0.5}).exact);
+}
+
+TEST(CheckedDistances, RefusesBadOptions) {
+  EXPECT_EQ(CheckedDistancesOptions{}.max_error, 0.01);
+  for (const double bad : {0.0, -1.0, 1.0, infinity}) {
+    EXPECT_THROW((CheckedDistancesOptions{.max_error = bad}.validate()), Error);
+  }
+  EXPECT_THROW((CheckedDistancesOptions{.sample = 0}.validate()), Error);
+  EXPECT_THROW((CheckedDistancesOptions{.sample = 1.5}.validate()), Error);
+}
+
+}  // namespace
+}  // namespace isopath::test
