@@ -195,7 +195,11 @@ void run_check(const CheckArguments& arguments, const CommonFlags& flags) {
   }
   if (arguments.repair && findings.repaired) write_mesh(arguments.output, findings.repaired->soup);
   print_warnings(flags, findings.notes);
-  print(flags.json ? findings_json(findings, arguments).dump(2) + "\n" : findings_text(findings, arguments));
+  if (flags.json) {
+    print_json(findings_json(findings, arguments));
+  } else {
+    print(findings_text(findings, arguments));
+  }
   if (!findings.repaired) throw Error(ErrorCode::bad_input, findings.why_unusable, {.file = arguments.mesh});
   if (arguments.strict && !findings.file.sound()) {
     throw Error(ErrorCode::bad_input, "the mesh needs repair",

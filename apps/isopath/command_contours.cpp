@@ -108,11 +108,8 @@ void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) 
   if (extension != ".vtp" && extension != ".json") {
     refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .json");
   }
-  const auto specs = parse_sources(arguments.input.sources);
   ConsoleProgress progress(flags.quiet);
-  const Part part = load(arguments.input, progress);
-  print_warnings(flags, part.warnings);
-  const SourceSet sources = make_sources(part.mesh, specs, part.vertex_of_file_vertex, progress);
+  const auto [part, sources] = load_with_sources(arguments.input, flags, progress);
   progress.stage("distance field");
   const ExactField field = ExactField::compute(part.mesh, sources, {}, progress);
   progress.stage("contours");
@@ -129,7 +126,7 @@ void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) 
   Json report = summary_json(part.mesh, levels, contours, graph);
   report["output"] = arguments.output;
   report["warnings"] = part.warnings;
-  print(report.dump(2) + "\n");
+  print_json(report);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ void run_export(const ExportArguments& arguments, const CommonFlags& flags) {
                                          {"format", arguments.format},
                                          {"bytes", content.size()},
                                          {"output", arguments.output}};
-  print(report.dump(2) + "\n");
+  print_json(report);
 }
 
 std::string format_help() {

@@ -152,11 +152,8 @@ Distances distances_of(const FieldArguments& arguments, const Part& part, const 
 
 void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
   check(arguments);
-  const auto specs = parse_sources(arguments.input.sources);
   ConsoleProgress progress(flags.quiet);
-  const Part part = load(arguments.input, progress);
-  print_warnings(flags, part.warnings);
-  const SourceSet sources = make_sources(part.mesh, specs, part.vertex_of_file_vertex, progress);
+  const auto [part, sources] = load_with_sources(arguments.input, flags, progress);
   progress.stage("distance field");
   const Distances found = distances_of(arguments, part, sources, progress);
   const std::vector<double>& distances = found.at_vertices;
@@ -177,7 +174,7 @@ void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
                                    {"warnings", part.warnings}};
   if (!found.check.is_null()) report["check"] = found.check;
   if (!way.points.empty()) report["path"] = way_json(way);
-  print(report.dump(2) + "\n");
+  print_json(report);
 }
 
 }  // namespace

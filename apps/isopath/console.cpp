@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "isopath/core/error.h"
@@ -138,6 +139,10 @@ void print_warnings(const CommonFlags& flags, const std::vector<std::string>& wa
 void print(std::string_view text) {
   const bool good = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!good) throw Error(ErrorCode::bad_input, "cannot write to standard output");
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+  print(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 int run(const CommonFlags& flags, const Action& action) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,8 @@ void print_warnings(const CommonFlags& flags, const std::vector<std::string>& wa
 
 /// Writes text to stdout; throws Error(bad_input) when stdout cannot be written.
 void print(std::string_view text);
+/// Writes it to stdout, indented. Bytes that are not UTF-8, as a file name may have, become replacement characters.
+void print_json(const nlohmann::ordered_json& json);
 
 /// Limits the threads to the flag, runs the action, and turns what it throws into a message on stderr and an exit
 /// status: 0 done, 2 wrong usage, 3 bad input, 4 no plan possible, 130 interrupted, 1 a fault of ours.

@@ -8,11 +8,24 @@
 #include <cmath>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "isopath/core/error.h"
+#include "isopath/plan/make_sources.h"
 
 namespace isopath::app {
 namespace {
+
+/// What to write instead of a length with a unit; empty for any other text.
+std::string advice_on_unit(double value, std::string_view rest) {
+  constexpr std::pair<std::string_view, double> units[] = {
+      {"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"inch", 25.4}};
+  for (const auto& [name, mm] : units) {
+    if (rest == name || rest == fmt::format(" {}", name))
+      return fmt::format(": lengths are in mm and are written without the unit, here {:.10g}", value * mm);
+  }
+  return rest.empty() || value == 0 ? "" : ": only the number is written, in the unit that the help names";
+}
 
 CLI::Validator number_that(bool (*allows)(double), const char* allowed) {
   const auto complaint = [allows, allowed](std::string& text) {
@@ -21,7 +34,9 @@ CLI::Validator number_that(bool (*allows)(double), const char* allowed) {
     const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
     const bool whole = error == std::errc() && end == text.data() + text.size();
     if (whole && std::isfinite(value) && allows(value)) return std::string();
-    return fmt::format("'{}' is not {}", text, allowed);
+    const std::string_view rest(end, text.data() + text.size());
+    const std::string advice = error == std::errc() ? advice_on_unit(value, rest) : "";
+    return fmt::format("'{}' is not {}{}", text, allowed, advice);
   };
   return {complaint, ""};
 }
@@ -45,12 +60,18 @@ CLI::Option* add_sources(CLI::App& command, std::vector<std::string>& sources) {
       ->default_str("auto");
 }
 
-Part load(const MeshInput& input, Progress& progress) { return load_part(input.mesh, unit_of(input.unit), progress); }
-
 std::vector<SourceSpec> parse_sources(const std::vector<std::string>& texts) {
   std::vector<SourceSpec> specs;
   for (const std::string& text : texts) specs.push_back(parse_source_spec(text));
   return specs;
+}
+
+PartAndSources load_with_sources(const MeshInput& input, const CommonFlags& flags, Progress& progress) {
+  const std::vector<SourceSpec> specs = parse_sources(input.sources);
+  PartAndSources loaded{load_part(input.mesh, unit_of(input.unit), progress), {}};
+  print_warnings(flags, loaded.part.warnings);
+  loaded.sources = make_sources(loaded.part.mesh, specs, loaded.part.vertex_of_file_vertex, progress);
+  return loaded;
 }
 
 std::string extension_of(const std::string& path) {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "console.h"
+#include "isopath/field/source.h"
 #include "isopath/plan/load_part.h"
 #include "isopath/plan/source_spec.h"
 
@@ -21,9 +23,15 @@ void add_mesh(CLI::App& command, MeshInput& input);
 CLI::Option* add_unit(CLI::App& command, std::string& unit);
 CLI::Option* add_sources(CLI::App& command, std::vector<std::string>& sources);
 
-/// Reads and repairs the mesh that was named.
-Part load(const MeshInput& input, Progress& progress);
 std::vector<SourceSpec> parse_sources(const std::vector<std::string>& texts);
+
+/// A part, and where distances on it are measured from.
+struct PartAndSources {
+  Part part;
+  SourceSet sources;
+};
+/// Reads and repairs the mesh that was named, says what it had to repair, and finds the sources on it.
+PartAndSources load_with_sources(const MeshInput& input, const CommonFlags& flags, Progress& progress);
 
 /// The extension of a path in lower case, with its dot.
 std::string extension_of(const std::string& path);

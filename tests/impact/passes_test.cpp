@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "support/test_meshes.h"
@@ -153,6 +154,44 @@ TEST(passes, meet_a_component_too_narrow_for_any_level) {
     }
   }
   EXPECT_GT(on_narrow, 2);
+}
+
+TEST(passes, on_missed_components_are_those_of_each_component_alone) {
+  // a plate, and strips of different widths below half a spacing: each has its one pass round it, half way in
+  TriangleSoup soup = test::planar_grid(8, 8, 20, 20).soup();
+  const std::vector<double> widths = {0.3, 0.5, 0.8, 1.1};
+  for (std::size_t k = 0; k < widths.size(); ++k) {
+    const TriangleSoup strip = test::planar_grid(6, 2, 6, widths[k]).soup();
+    const auto offset = static_cast<Index>(soup.positions.size());
+    const auto shift = 30.0 + 10.0 * static_cast<double>(k);
+    for (const Vec3& p : strip.positions) soup.positions.push_back(p + Vec3(shift, 0, 0));
+    for (const Triangle& t : strip.triangles) soup.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+  const TriangleMesh mesh(soup);
+  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
+  const Passes passes = choose_passes(mesh, field, 3, Progress::none());
+  expect_each_in_one_run(passes);
+  std::map<Index, int> contours_of;
+  for (const Contour& contour : passes.contours) {
+    const Index component = mesh.component_of(contour.points.front().face);
+    if (component == 0) continue;
+    ++contours_of[component];
+    EXPECT_TRUE(contour.closed);
+    EXPECT_NEAR(contour.level, widths[component - 1] / 4, 1e-9);
+    for (const SurfacePoint& p : contour.points) {
+      EXPECT_EQ(mesh.component_of(p.face), component);
+      EXPECT_NEAR(field.value(p), contour.level, 1e-9 * mesh.size());
+    }
+  }
+  for (Index c = 1; c <= 4; ++c) EXPECT_EQ(contours_of[c], 1) << "component " << c;
+}
+
+TEST(passes, beyond_all_counting_are_refused) {
+  const TriangleMesh mesh = test::planar_grid(3, 3, 3, 3);
+  const VertexField field = height_field(mesh, Vec3::UnitX());
+  for (const double spacing : {1e-7, 1e-12, 1e-300}) {
+    EXPECT_THROW(choose_passes(mesh, field, spacing, Progress::none()), Error) << spacing;
+  }
 }
 
 TEST(passes, of_a_function_without_range_are_none) {

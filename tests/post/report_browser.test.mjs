@@ -165,6 +165,17 @@ test('a drag turns the part and Fit keeps it in sight', async () => {
   assert.ok(picture.filter((pixel) => pixel >>> 24 !== 0).length > 0.15 * picture.length);
 });
 
+test('Fit keeps a path in sight that runs far above the part', async () => {
+  const file = join(folder, 'spray.html');
+  execFileSync(sample, [file, '10', '150']);
+  const spray = await open(file);
+  for (const view of ['iso', 'front', 'top', 'fit']) {
+    const reach = await spray.evaluate((name) => { window.isopath.look(name); window.isopath.draw(); return window.isopath.pathReach(); }, view);
+    assert.ok(reach > 0.3 && reach <= 1, `${view}: the path comes to ${reach} of the way to the edge`);
+  }
+  await spray.close();
+});
+
 test('dark follows the system', async () => {
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await paper();
@@ -187,6 +198,6 @@ test('200,000 triangles load and turn', async () => {
 
 test('nothing was asked of the network, and nothing was complained about', () => {
   assert.deepEqual(requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:') && !url.startsWith('blob:')), []);
-  assert.equal(requests.filter((url) => url.startsWith('file:')).length, 2, 'one file each');
+  assert.equal(requests.filter((url) => url.startsWith('file:')).length, 3, 'one file each');
   assert.deepEqual(complaints, []);
 });

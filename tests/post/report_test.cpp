@@ -109,6 +109,25 @@ TEST(Report, CoordinatesAreRelativeToTheMiddle) {
   EXPECT_NE(block(html, "meta").find("\"origin\":[1000000.5,0.5,0.0]"), std::string::npos);
 }
 
+TEST(Report, AFinerMeshIsShownWithTheTrianglesItIsAPartOf) {
+  const TriangleMesh mesh = triangle();
+  const RefinedMesh fine = split_uniformly(mesh);
+  ReportData data{.title = "part", .mesh = &mesh, .shown = &fine};
+  data.scalars.push_back({.name = "gap", .unit = "mm", .values = {1, 2, 3, 4, 5, 6}});
+  const std::string html = report_html(data);
+  const std::vector<std::uint32_t> part = {0, 1, 2};
+  const std::vector<std::uint32_t> parents = {0, 0, 0, 0};
+  EXPECT_EQ(block(html, "part-triangles"), base64_of(std::span<const std::uint32_t>(part)));
+  EXPECT_EQ(block(html, "mesh-parents"), base64_of(std::span<const std::uint32_t>(parents)));
+  EXPECT_NE(block(html, "meta").find("\"refined\":true"), std::string::npos);
+
+  const std::string plain = report_html({.title = "part", .mesh = &mesh});
+  EXPECT_EQ(block(plain, "mesh-parents"), "absent");
+  EXPECT_NE(block(plain, "meta").find("\"refined\":false"), std::string::npos);
+  const RefinedMesh coarser{.mesh = mesh, .on_old = {}, .old_face = {}};
+  EXPECT_THROW(report_html({.title = "part", .mesh = &fine.mesh, .shown = &coarser}), Error);
+}
+
 TEST(Report, WhatIsAbsentHasNoBlock) {
   const TriangleMesh mesh = triangle();
   const ToolPath empty;

@@ -15,7 +15,11 @@ export function readReport(read) {
   const words = (id) => new Uint32Array(decodeBase64(read(id)));
   return {
     meta,
-    mesh: { positions: floats('mesh-positions'), triangles: words('mesh-triangles') },
+    mesh: {
+      positions: floats('mesh-positions'), triangles: words('mesh-triangles'),
+      // The part's own triangles where the shown ones are finer, and which of them each shown one is a part of.
+      part: meta.refined ? { triangles: words('part-triangles'), parents: words('mesh-parents') } : null,
+    },
     scalars: meta.scalars.map((scalar, i) => ({ ...scalar, values: floats(`scalar-${i}`) })),
     isolines: meta.isolines.length ? splitLines(meta.isolines, floats('isoline-points')) : [],
     impact: meta.impact

@@ -63,6 +63,32 @@ export function cornerNormals(positions, triangles, normals, creaseCosine) {
   return out;
 }
 
+/** Corner normals of a finer mesh: those of the part's triangles (`normals`, by corner), spread linearly inside them. */
+export function normalsInside({ positions, triangles, part }, normals) {
+  const out = new Float32Array(3 * triangles.length);
+  for (let corner = 0; corner < triangles.length; ++corner) {
+    const parent = 3 * part.parents[Math.floor(corner / 3)];
+    const weights = weightsIn(positions, part.triangles.subarray(parent, parent + 3), triangles[corner]);
+    const n = [0, 1, 2].map((k) => weights.reduce((sum, weight, i) => sum + weight * normals[3 * (parent + i) + k], 0));
+    const norm = Math.hypot(...n) || 1;
+    for (let k = 0; k < 3; ++k) out[3 * corner + k] = n[k] / norm;
+  }
+  return out;
+}
+
+/** Barycentric coordinates of vertex v in the triangle of three others; a triangle without area gives its first. */
+function weightsIn(positions, [a, b, c], v) {
+  const from = (p, q) => [0, 1, 2].map((k) => positions[3 * q + k] - positions[3 * p + k]);
+  const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+  const [u, w, p] = [from(a, b), from(a, c), from(a, v)];
+  const [uu, uw, ww, pu, pw] = [dot(u, u), dot(u, w), dot(w, w), dot(p, u), dot(p, w)];
+  const scale = uu * ww - uw * uw;
+  if (!(scale > 1e-12 * uu * ww)) return [1, 0, 0];
+  const s = (ww * pu - uw * pw) / scale;
+  const t = (uu * pw - uw * pu) / scale;
+  return [1 - s - t, s, t];
+}
+
 /** End points of the boundary edges and of the edges that turn by more than the crease angle: [ax, ay, az, bx, ...]. */
 export function featureEdges(positions, triangles, normals, creaseCosine) {
   const nVertices = positions.length / 3;

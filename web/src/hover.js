@@ -31,7 +31,7 @@ export class Probe {
     if (!weights) return null;
     return {
       point: hit.point.toArray(),
-      face: hit.faceIndex,
+      face: this.mesh.part ? this.mesh.part.parents[hit.faceIndex] : hit.faceIndex,
       values: this.scalars.map(({ values }) => interpolate(values, corners, weights.toArray())),
     };
   }

@@ -105,6 +105,7 @@ function start() {
   addHistograms(report.meta.histograms);
   const view = new View(byId('stage'), report.mesh.positions);
   const path = pathOf(report);
+  if (path) view.include(path.positions);
   const model = new Model(report, path, view);
   const desk = new Desk(view, model, path);
   followSystemTheme(model, view);

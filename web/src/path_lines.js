@@ -1,6 +1,6 @@
 // The path as thick lines with a dark casing, like roads on a map: covering moves by colour, links in their own, lifts
 // thin and dashed. Moves that lie ahead of the tool are dimmed while it runs.
-import { Color, Group, InstancedBufferAttribute } from 'three';
+import { Color, Group, InstancedBufferAttribute, InstancedInterleavedBuffer, InterleavedBufferAttribute } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
@@ -88,14 +88,19 @@ class Strand {
     }
     if (!this.moves.length) return;
     const ends = new Float32Array(6 * this.moves.length);
+    const axes = new Float32Array(6 * this.moves.length);
     const clock = new Float32Array(2 * this.moves.length);
     this.moves.forEach((i, k) => {
       ends.set(path.positions.subarray(3 * i, 3 * i + 6), 6 * k);
+      axes.set(path.axes.subarray(3 * i, 3 * i + 6), 6 * k);
       clock[2 * k] = path.clock[i];
       clock[2 * k + 1] = path.clock[i + 1];
     });
     this.geometry = new LineSegmentsGeometry().setPositions(ends);
     this.geometry.setAttribute('instanceClock', new InstancedBufferAttribute(clock, 2));
+    const pairs = new InstancedInterleavedBuffer(axes, 6, 1);
+    this.geometry.setAttribute('axisStart', new InterleavedBufferAttribute(pairs, 3, 0));
+    this.geometry.setAttribute('axisEnd', new InterleavedBufferAttribute(pairs, 3, 3));
   }
 
   setColours(shade) {
@@ -128,13 +133,16 @@ export function feedRange(path) {
   return finiteRange(path.feeds.filter((feed, i) => i > 0 && path.kinds[i] === COVER));
 }
 
-/** Teaches three's line shader to dim what lies ahead and to come forward. */
+/** Teaches three's line shader to dim what lies ahead and to come forward: the farther, the more the surface (across the
+ * tool's axis) slopes away from the eye, where it would cut the flat line in half. */
 function adapt(shader, uniforms) {
   Object.assign(shader.uniforms, uniforms);
-  const come = (end) => `${end}.xyz *= max(0.5, 1.0 - forward / length(${end}.xyz));`;
+  const come = (end, axis) => `${end}.xyz *= max(0.5, 1.0 - forward * ahead(${axis}, ${end}.xyz) / length(${end}.xyz));`;
   shader.vertexShader = shader.vertexShader
-    .replace('void main() {', 'attribute vec2 instanceClock;\nuniform float forward;\nvarying float vClock;\nvoid main() {\nvClock = position.y < 0.5 ? instanceClock.x : instanceClock.y;')
-    .replace('vec4 end = modelViewMatrix * vec4( instanceEnd, 1.0 );', `$&\n${come('start')}\n${come('end')}`);
+    .replace('void main() {', 'attribute vec2 instanceClock;\nattribute vec3 axisStart;\nattribute vec3 axisEnd;\nuniform float forward;\nvarying float vClock;\n' +
+      'float ahead(vec3 axis, vec3 place) {\n  return 0.4 + 0.6 / max(0.12, abs(dot(normalize(normalMatrix * axis), normalize(place))));\n}\n' +
+      'void main() {\nvClock = position.y < 0.5 ? instanceClock.x : instanceClock.y;')
+    .replace('vec4 end = modelViewMatrix * vec4( instanceEnd, 1.0 );', `$&\n${come('start', 'axisStart')}\n${come('end', 'axisEnd')}`);
   shader.fragmentShader = shader.fragmentShader
     .replace('void main() {', 'uniform float now;\nuniform vec3 dim;\nvarying float vClock;\nvoid main() {')
     .replace('#include <color_fragment>', '#include <color_fragment>\nif (vClock > now) diffuseColor.rgb = mix(diffuseColor.rgb, dim, 0.78);');

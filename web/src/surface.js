@@ -4,7 +4,7 @@ import {
   LineSegments, Mesh, MeshStandardMaterial, RGBAFormat, SRGBColorSpace, UnsignedByteType,
 } from 'three';
 import { colourTable, palette, sizeOfTable } from './colour_map.js';
-import { cornerNormals, faceNormals, featureEdges } from './facets.js';
+import { cornerNormals, faceNormals, featureEdges, normalsInside } from './facets.js';
 import { scaleOf } from './scale.js';
 
 const creaseCosine = Math.cos((35 * Math.PI) / 180);
@@ -15,10 +15,13 @@ export class Surface {
     this.triangles = mesh.triangles;
     this.scalars = scalars;
     this.scales = scalars.map(scaleOf);
-    const normals = faceNormals(mesh.positions, mesh.triangles);
+    const { triangles: faces } = mesh.part ?? mesh;
+    const normals = faceNormals(mesh.positions, faces);
+    let shading = cornerNormals(mesh.positions, faces, normals, creaseCosine);
+    if (mesh.part) shading = normalsInside(mesh, shading);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(atCorners(mesh.positions, mesh.triangles, 3), 3));
-    geometry.setAttribute('normal', new BufferAttribute(cornerNormals(mesh.positions, mesh.triangles, normals, creaseCosine), 3));
+    geometry.setAttribute('normal', new BufferAttribute(shading, 3));
     this.value = new BufferAttribute(new Float32Array(mesh.triangles.length), 1);
     geometry.setAttribute('value', this.value);
 
@@ -34,7 +37,7 @@ export class Surface {
 
     this.edges = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.55 }));
     this.edges.geometry.setAttribute('position',
-      new BufferAttribute(featureEdges(mesh.positions, mesh.triangles, normals, creaseCosine), 3));
+      new BufferAttribute(featureEdges(mesh.positions, faces, normals, creaseCosine), 3));
     this.group = new Group();
     this.group.add(new Mesh(geometry, material), this.edges);
   }

@@ -25,6 +25,16 @@ export function connectTestHandle({ view, model, desk, timeBar, path, report, lo
       const values = Object.fromEntries(report.scalars.map(({ name }, i) => [name, hit.values[i]]));
       return { point: hit.point.map((value, k) => value + origin[k]), face: hit.face, values };
     },
+    /** How far from the middle of the picture the path comes, 1 being its edge; 0 without a path. */
+    pathReach: () => {
+      const p = view.camera.position.clone();
+      let reach = 0;
+      for (let i = 0; i < (path?.n ?? 0); ++i) {
+        p.fromArray(path.positions, 3 * i).project(view.camera);
+        reach = Math.max(reach, Math.abs(p.x), Math.abs(p.y));
+      }
+      return reach;
+    },
     /** Draws at once. */
     draw: () => view.draw(),
   };

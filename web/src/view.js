@@ -15,7 +15,7 @@ export const presets = {
 export class View {
   constructor(container, positions) {
     this.container = container;
-    this.positions = positions;
+    this.clouds = [positions];  // what Fit brings into sight
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     container.prepend(this.renderer.domElement);
@@ -30,8 +30,15 @@ export class View {
     this.beforeDraw = [];
     this.insets = { left: 0, right: 0, top: 0, bottom: 0 };
     this.radius = Math.max(1e-6, radiusOf(positions));
+    this.reach = this.radius;
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
+  }
+
+  /** Keeps more than the part in sight: a nozzle's path runs well above it. */
+  include(positions) {
+    this.clouds.push(positions);
+    this.reach = Math.max(this.reach, radiusOf(positions));
   }
 
   /** A headlight from over the left shoulder models the surface from wherever one looks; the sky fills the rest. */
@@ -81,8 +88,8 @@ export class View {
   draw() {
     this.controls.update();
     const distance = this.camera.position.length();
-    this.camera.near = Math.max(distance - 1.6 * this.radius, 0.004 * Math.max(this.radius, distance));
-    this.camera.far = distance + 2.5 * this.radius;
+    this.camera.near = Math.max(distance - 1.6 * this.reach, 0.004 * Math.max(this.radius, distance));
+    this.camera.far = distance + 2.5 * this.reach;
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     for (const update of this.beforeDraw) update();
@@ -95,12 +102,12 @@ export class View {
     return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / this.container.clientHeight;
   }
 
-  /** Sees the whole part from a direction, by default the present one. */
+  /** Sees the whole part and its path from a direction, by default the present one. */
   fit(direction = this.camera.position.clone().sub(this.controls.target)) {
     const toCamera = direction.clone().normalize();
     const right = new Vector3().crossVectors(this.camera.up, toCamera).normalize();
     const up = new Vector3().crossVectors(toCamera, right);
-    const box = extents(this.positions, [right, up, toCamera]);
+    const box = extents(this.clouds, [right, up, toCamera]);
     const target = new Vector3();
     [right, up, toCamera].forEach((axis, k) => target.addScaledVector(axis, (box[k][0] + box[k][1]) / 2));
     const { left, right: rightInset, top, bottom } = this.insets;
@@ -109,11 +116,13 @@ export class View {
     const slopeRight = slope * Math.max(0.3 * this.container.clientWidth, this.container.clientWidth - left - rightInset);
     let distance = 0;
     const p = new Vector3();
-    const step = 3 * Math.max(1, Math.floor(this.positions.length / 3 / 20000));
-    for (let i = 0; i < this.positions.length; i += step) {
-      p.fromArray(this.positions, i).sub(target);
-      const reach = Math.max(Math.abs(p.dot(right)) / slopeRight, Math.abs(p.dot(up)) / slopeUp);
-      distance = Math.max(distance, reach + p.dot(toCamera));
+    for (const positions of this.clouds) {
+      const step = 3 * Math.max(1, Math.floor(positions.length / 3 / 20000));
+      for (let i = 0; i < positions.length; i += step) {
+        p.fromArray(positions, i).sub(target);
+        const reach = Math.max(Math.abs(p.dot(right)) / slopeRight, Math.abs(p.dot(up)) / slopeUp);
+        distance = Math.max(distance, reach + p.dot(toCamera));
+      }
     }
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(toCamera, Math.max(distance, 1e-3 * this.radius));
@@ -145,16 +154,18 @@ function radiusOf(positions) {
   return Math.sqrt(squared);
 }
 
-function extents(positions, axes) {
+function extents(clouds, axes) {
   const box = axes.map(() => [Infinity, -Infinity]);
   const p = new Vector3();
-  for (let i = 0; i < positions.length; i += 3) {
-    p.fromArray(positions, i);
-    axes.forEach((axis, k) => {
-      const x = p.dot(axis);
-      if (x < box[k][0]) box[k][0] = x;
-      if (x > box[k][1]) box[k][1] = x;
-    });
+  for (const positions of clouds) {
+    for (let i = 0; i < positions.length; i += 3) {
+      p.fromArray(positions, i);
+      axes.forEach((axis, k) => {
+        const x = p.dot(axis);
+        if (x < box[k][0]) box[k][0] = x;
+        if (x > box[k][1]) box[k][1] = x;
+      });
+    }
   }
   return box;
 }

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { cornerNormals, faceNormals, featureEdges } from '../src/facets.js';
+import { cornerNormals, faceNormals, featureEdges, normalsInside } from '../src/facets.js';
 import { segmentsOf } from '../src/isolines.js';
 import { interpolate } from '../src/hover.js';
 
@@ -48,4 +48,20 @@ test('reading a value: linear, exact at vertices, and none where a corner that c
   assert.equal(interpolate(values, [0, 1, 2], [0.25, 0.75, 0]), 4);
   assert.equal(interpolate(values, [0, 1, 2], [1, 0, 0]), 1);
   assert.ok(!Number.isFinite(interpolate(values, [0, 1, 2], [0.3, 0.3, 0.4])));
+});
+
+test('inside a triangle of the part, normals of a finer mesh go from corner to corner', () => {
+  const { positions, triangles } = roof(0.3);
+  const corners = cornerNormals(positions, triangles, faceNormals(positions, triangles), cosine);
+  // The level square's first triangle (0, 2, 1) once more, halved from corner 0 to the middle of the other side.
+  const finer = Float32Array.of(...positions, 0.5, 0.5, 0);
+  const mesh = { positions: finer, triangles: Uint32Array.of(0, 2, 6, 0, 6, 1), part: { triangles, parents: Uint32Array.of(0, 0) } };
+  const inside = normalsInside(mesh, corners);
+  const close = (at, expected) => expected.forEach((x, k) => assert.ok(Math.abs(inside[3 * at + k] - x) < 1e-6, `corner ${at}`));
+  close(0, corners.subarray(0, 3));
+  close(1, corners.subarray(3, 6));
+  close(5, corners.subarray(6, 9));
+  const mean = [0, 1, 2].map((k) => corners[3 + k] + corners[6 + k]);
+  close(2, mean.map((x) => x / Math.hypot(...mean)));
+  close(4, mean.map((x) => x / Math.hypot(...mean)));
 });

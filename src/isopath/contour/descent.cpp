@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "isopath/core/segment.h"
+
 namespace isopath {
 
 namespace {
@@ -125,10 +127,7 @@ double Descent::distance_to_piece(const Vec3& point, const LevelCut::Piece& piec
   line.push_back(piece.is_loop() ? line.front() : position_of(mesh_, cut_.point_of(mesh_, piece.to)));
   double best = infinity;
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vec3 step = line[i] - line[i - 1];
-    const double squared = step.squaredNorm();
-    const double t = squared > 0 ? std::clamp((point - line[i - 1]).dot(step) / squared, 0.0, 1.0) : 0;
-    best = std::min(best, (line[i - 1] + t * step - point).norm());
+    best = std::min(best, distance_to_segment(line[i - 1], line[i], point));
   }
   return best;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "isopath/core/segment.h"
+
 namespace isopath {
 
 namespace {
@@ -12,8 +14,6 @@ namespace {
 constexpr int deepest_chord = 24;
 // A level set that runs along an inner edge is searched at 2^14 points, which bounds the time it can take.
 constexpr int deepest_division = 14;
-
-Vec3 mix(const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; }
 
 }  // namespace
 

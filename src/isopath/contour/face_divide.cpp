@@ -5,14 +5,9 @@
 #include <limits>
 
 #include "isopath/contour/face_cut.h"
+#include "isopath/core/segment.h"
 
 namespace isopath {
-
-namespace {
-
-Vec3 mix(const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; }
-
-}  // namespace
 
 void FaceCutter::divide(const Corners& corners, const Sides& sides, int depth) {
   const std::size_t n_crossings = sides[0].size() + sides[1].size() + sides[2].size();

@@ -1,6 +1,6 @@
 #include "isopath/field/source_faces.h"
 
-#include <algorithm>
+#include "isopath/core/segment.h"
 
 namespace isopath {
 
@@ -18,9 +18,7 @@ std::vector<Index> faces_of(const TriangleMesh& mesh, const SourceElement& eleme
 double distance_in_face(const TriangleMesh& mesh, const SourceElement& element, const Vec3& point) {
   const Vec3 a = position_of(mesh, element.a);
   const Vec3 b = element.kind == SourceElement::Kind::segment ? position_of(mesh, element.b) : a;
-  const double squared = (b - a).squaredNorm();
-  const double t = squared > 0 ? std::clamp((point - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return (point - a - t * (b - a)).norm();
+  return distance_to_segment(a, b, point);
 }
 
 }  // namespace isopath

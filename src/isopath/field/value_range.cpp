@@ -6,49 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "isopath/field/face_part.h"
+
 namespace isopath {
 namespace {
 
-/// A part of a face, by the barycentric coordinates of its corners.
-struct Part {
-  Index face;
-  Vec3 corner[3];
-  int depth = 0;
-
-  static Part whole(Index face) { return {face, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}}; }
-  Vec3 centre() const { return (corner[0] + corner[1] + corner[2]) / 3; }
-};
-
 constexpr int deepest = 24;
-
-/// Distance from the centre to the farthest corner.
-double radius_of(const TriangleMesh& mesh, const Part& part) {
-  const Vec3 place = position_of(mesh, {part.face, part.centre()});
-  double radius = 0;
-  for (const Vec3& c : part.corner) radius = std::max(radius, (position_of(mesh, {part.face, c}) - place).norm());
-  return radius;
-}
-
-/// In two across the longest side: thin parts become round.
-void divide(const TriangleMesh& mesh, const Part& part, std::vector<Part>& parts) {
-  int longest = 0;
-  double most = -1;
-  for (int i = 0; i < 3; ++i) {
-    const double side =
-        (position_of(mesh, {part.face, part.corner[i]}) - position_of(mesh, {part.face, part.corner[(i + 1) % 3]}))
-            .norm();
-    if (side > most) {
-      most = side;
-      longest = i;
-    }
-  }
-  const Vec3 a = part.corner[longest];
-  const Vec3 b = part.corner[(longest + 1) % 3];
-  const Vec3 c = part.corner[(longest + 2) % 3];
-  const Vec3 middle = 0.5 * (a + b);
-  parts.push_back({part.face, {a, middle, c}, part.depth + 1});
-  parts.push_back({part.face, {middle, b, c}, part.depth + 1});
-}
 
 bool is_reached(const TriangleMesh& mesh, const SurfaceFunction& function, Index face) {
   const auto& corners = mesh.triangle(face);
@@ -59,30 +22,32 @@ bool is_reached(const TriangleMesh& mesh, const SurfaceFunction& function, Index
 /// Widens the range by what the face holds inside; finer only where the slope allows values beyond it.
 void search(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double tolerance,
             ValueRange& range) {
-  std::vector<Part> parts{Part::whole(face)};
+  const FaceCorners corners = corners_of(mesh, face);
+  std::vector<FacePart> parts{FacePart::whole(face)};
   while (!parts.empty()) {
-    const Part part = parts.back();
+    const FacePart part = parts.back();
     parts.pop_back();
     const double value = function.value({face, part.centre()});
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
-    const double reach = radius_of(mesh, part) * function.max_slope();
+    const double reach = radius_of(corners, part) * function.max_slope();
     const bool beyond = value + reach > range.high + tolerance ||
                         std::max(value - reach, function.lower_bound()) < range.low - tolerance;
-    if (beyond && part.depth < deepest) divide(mesh, part, parts);
+    if (beyond && part.depth < deepest) halve(corners, part, parts);
   }
 }
 
 bool may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double level) {
-  std::vector<Part> parts{Part::whole(face)};
+  const FaceCorners corners = corners_of(mesh, face);
+  std::vector<FacePart> parts{FacePart::whole(face)};
   while (!parts.empty()) {
-    const Part part = parts.back();
+    const FacePart part = parts.back();
     parts.pop_back();
     const double value = function.value({face, part.centre()});
     if (value >= level) return true;
-    if (value + radius_of(mesh, part) * function.max_slope() < level) continue;
+    if (value + radius_of(corners, part) * function.max_slope() < level) continue;
     if (part.depth >= deepest) return true;
-    divide(mesh, part, parts);
+    halve(corners, part, parts);
   }
   return false;
 }

@@ -7,15 +7,15 @@
 #include <cmath>
 
 #include "isopath/core/error.h"
-#include "isopath/impact/cover_field.h"
+#include "isopath/field/face_part.h"
 
 namespace isopath {
 namespace {
 
-/// Distance between samples, in spacings: the gap, twice a distance, has slope 2, so that in the part around a sample
-/// it is off by no more than 4/3 of this. Faces with sides of more than `most_divisions` parts have coarser ones.
-constexpr double sample_distance = 1.0 / 6;
-constexpr double most_divisions = 64;  ///< of a side
+/// Size of the parts that samples stand for, in spacings: the gap, twice a distance, has slope 2, so that in the part
+/// around a sample it is off by no more than twice this. Faces of more than 2^`most_halvings` parts have larger ones.
+constexpr double sample_radius = 1.0 / 9;
+constexpr int most_halvings = 12;
 constexpr double covered_limit = 1.02;
 
 struct Sample {
@@ -23,25 +23,26 @@ struct Sample {
   double area;
 };
 
-/// Gaps at the centres of the parts of an evenly divided face.
-void sample_face(const ExactField& field, Index face, double step, std::vector<Sample>& samples) {
+/// Gaps at the centres of the parts of a face, no farther than `radius` from anything in their part.
+void sample_face(const ExactField& field, Index face, double radius, std::vector<Sample>& samples) {
   const TriangleMesh& mesh = field.mesh();
-  double longest = 0;
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) longest = std::max(longest, field.geometry().length(h));
-  const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, most_divisions));
-  const double area = mesh.face_area(face) / (n * n);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n - i; ++j) {
-      for (const double third : {1.0 / 3, 2.0 / 3}) {
-        const Vec3 b((i + third) / n, (j + third) / n, 1 - (i + j + 2 * third) / n);
-        if (b.minCoeff() < 0) continue;  // the downward part at the end of a row
-        samples.push_back({2 * field.value({face, b}), area});
-      }
+  const double area = mesh.face_area(face);
+  const IntrinsicGeometry& geometry = field.geometry();
+  const Vec2 apex = geometry.apex(3 * face);
+  const FaceCorners corners = {Vec3::Zero(), Vec3(geometry.length(3 * face), 0, 0), Vec3(apex.x(), apex.y(), 0)};
+  std::vector<FacePart> parts{FacePart::whole(face)};
+  while (!parts.empty()) {
+    const FacePart part = parts.back();
+    parts.pop_back();
+    if (part.depth < most_halvings && radius_of(corners, part) > radius) {
+      halve(corners, part, parts);
+    } else {
+      samples.push_back({2 * field.value({face, part.centre()}), std::ldexp(area, -part.depth)});
     }
   }
 }
 
-std::vector<Sample> sample_surface(const ExactField& field, double step, const Progress& progress) {
+std::vector<Sample> sample_surface(const ExactField& field, double radius, const Progress& progress) {
   const Index n = field.mesh().n_faces();
   constexpr Index chunk = 64;
   std::vector<std::vector<Sample>> parts((n + chunk - 1) / chunk);
@@ -49,7 +50,7 @@ std::vector<Sample> sample_surface(const ExactField& field, double step, const P
     const auto first = static_cast<Index>(k) * chunk;
     for (Index f = first; f < std::min(n, first + chunk); ++f) {
       progress.checkpoint();  // a large face that the path crosses many times takes a while
-      sample_face(field, f, step, parts[k]);
+      sample_face(field, f, radius, parts[k]);
     }
   });
   std::vector<Sample> samples;
@@ -57,21 +58,29 @@ std::vector<Sample> sample_surface(const ExactField& field, double step, const P
   return samples;
 }
 
+void validate_spacing(double spacing) {
+  if (spacing > 0 && std::isfinite(spacing)) return;
+  throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
+              {.element = "spacing", .value = fmt::format("{}", spacing)});
+}
+
 }  // namespace
 
 GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
                       const IntrinsicGeometry* metric) {
-  if (!(spacing > 0 && std::isfinite(spacing))) {
-    throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
-                {.element = "spacing", .value = fmt::format("{}", spacing)});
-  }
+  validate_spacing(spacing);
   progress.stage("gap");
+  return measure_gap(distance_from_cover(mesh, curve, spacing, progress, metric), spacing, progress);
+}
+
+GapReport measure_gap(const CoverField& cover, double spacing, Progress& progress) {
+  validate_spacing(spacing);
   GapReport report;
-  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress, metric);
   const ExactField& field = cover.field;
+  const TriangleMesh& mesh = field.mesh();
   for (const double d : field.vertex_distances()) report.vertex_gap.push_back(2 * d);
 
-  std::vector<Sample> samples = sample_surface(field, sample_distance * spacing, progress);
+  std::vector<Sample> samples = sample_surface(field, sample_radius * spacing, progress);
   std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.gap < b.gap; });
   report.histogram.assign(41, 0.0);
   double sum = 0;

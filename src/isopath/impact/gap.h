@@ -4,6 +4,7 @@
 
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/impact/cover_field.h"
 #include "isopath/impact/impact_curve.h"
 
 namespace isopath {
@@ -14,8 +15,9 @@ namespace isopath {
 /// In a metric, distances and the spacing are lengths in it; areas stay those in space.
 /// Where a part of the surface is not reached its gap is infinite, and so are max, mean and cv.
 struct GapReport {
-  double max = 0;   ///< of the vertices and of samples a sixth of a spacing apart (on very large faces farther)
-  double p99 = 0;   ///< 99 % of the area has at most this gap
+  double max = 0;  ///< of the vertices and of samples no farther than a ninth of a spacing from anywhere (in very large
+                   ///< faces farther)
+  double p99 = 0;  ///< 99 % of the area has at most this gap
   double mean = 0;  ///< area-weighted; half a spacing for ideal parallel passes
   /// Coefficient of variation: standard deviation / mean, area-weighted; ideal parallel passes have 1/√3.
   double cv = 0;
@@ -30,5 +32,7 @@ struct GapReport {
 /// Error(cancelled) on request.
 GapReport measure_gap(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing,
                       Progress& progress = Progress::none(), const IntrinsicGeometry* metric = nullptr);
+/// The same for a caller who has the distance from the cover at hand.
+GapReport measure_gap(const CoverField& cover, double spacing, Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -1,12 +1,20 @@
 #include "isopath/impact/passes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "isopath/core/error.h"
 #include "isopath/field/value_range.h"
+#include "isopath/impact/moved_levels.h"
 
 namespace isopath {
 namespace {
+
+/// Far beyond all use, and far below what an index can count.
+constexpr double most_passes = 1e6;
 
 /// The contours kept, linked over those left out.
 struct Links {
@@ -39,14 +47,15 @@ Links link_kept(const ContourSet& set, const std::vector<char>& keep) {
   return links;
 }
 
-/// A component so small or narrow that no level meets it gets one pass half way between its extremes.
-void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& function, const IsolineOptions& options,
-                           Passes& passes, Progress& progress) {
+/// The level half way between the extremes of each component that no contour lies on, infinity for the others.
+std::vector<double> levels_of_missed_components(const TriangleMesh& mesh, const SurfaceFunction& function,
+                                                const std::vector<Contour>& contours, const Progress& progress) {
   std::vector<ValueRange> range(mesh.n_components());
   std::vector<char> met(mesh.n_components(), 0);
-  for (const Contour& contour : passes.contours) met[mesh.component_of(contour.points.front().face)] = 1;
+  for (const Contour& contour : contours) met[mesh.component_of(contour.points.front().face)] = 1;
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     if (met[mesh.component_of(f)]) continue;
+    progress.checkpoint();
     ValueRange& here = range[mesh.component_of(f)];
     const double centre = function.value({f, Vec3::Constant(1.0 / 3)});
     for (const double value :
@@ -57,14 +66,33 @@ void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& func
       here.high = std::max(here.high, value);
     }
   }
+  std::vector<double> level(mesh.n_components(), infinity);
   for (Index c = 0; c < mesh.n_components(); ++c) {
-    if (met[c] || !(range[c].high > range[c].low)) continue;
-    const double level = 0.5 * (range[c].low + range[c].high);
-    for (Contour& contour : isolines(mesh, function, std::span(&level, 1), options, progress)) {
-      if (mesh.component_of(contour.points.front().face) != c) continue;
-      passes.runs.push_back({{static_cast<Index>(passes.contours.size())}, contour.closed});
-      passes.contours.push_back(std::move(contour));
-    }
+    if (!met[c] && range[c].high > range[c].low) level[c] = 0.5 * (range[c].low + range[c].high);
+  }
+  return level;
+}
+
+/// A component so small or narrow that no level meets it gets one pass half way between its extremes.
+void add_missed_components(const TriangleMesh& mesh, const SurfaceFunction& function, const IsolineOptions& options,
+                           Passes& passes, Progress& progress) {
+  const std::vector<double> level = levels_of_missed_components(mesh, function, passes.contours, progress);
+  if (std::none_of(level.begin(), level.end(), [](double l) { return l < infinity; })) return;
+  std::vector<double> level_of_vertex(mesh.n_vertices(), infinity);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    for (const Index v : mesh.triangle(f)) level_of_vertex[v] = level[mesh.component_of(f)];
+  }
+  const double zero = 0;
+  std::vector<Contour> missed =
+      isolines(mesh, MovedLevels(mesh, function, std::move(level_of_vertex)), std::span(&zero, 1), options, progress);
+  // component after component, as their passes would be found one by one
+  const auto component = [&](const Contour& contour) { return mesh.component_of(contour.points.front().face); };
+  std::stable_sort(missed.begin(), missed.end(),
+                   [&](const Contour& a, const Contour& b) { return component(a) < component(b); });
+  for (Contour& contour : missed) {
+    contour.level = level[component(contour)];
+    passes.runs.push_back({{static_cast<Index>(passes.contours.size())}, contour.closed});
+    passes.contours.push_back(std::move(contour));
   }
 }
 
@@ -84,6 +112,11 @@ Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, 
   const ValueRange range = value_range(mesh, function, 0.01 * spacing, progress);
   if (!(range.high > range.low)) return passes;
   const double count = std::max(1.0, std::ceil((range.high - range.low) / spacing - 1e-9));
+  if (!(count <= most_passes)) {
+    throw Error(ErrorCode::bad_usage, "the spacing is too small for the function's range",
+                {.element = "spacing",
+                 .value = fmt::format("{} mm makes {:.3g} passes, limit {:.0f}", spacing, count, most_passes)});
+  }
   passes.spacing = (range.high - range.low) / count;
   std::vector<double> levels;
   for (int k = 1; k < 2 * static_cast<int>(count); ++k) levels.push_back(range.low + 0.5 * k * passes.spacing);

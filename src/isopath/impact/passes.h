@@ -28,7 +28,8 @@ struct Passes {
 
 /// Levels half a spacing in from the least and the greatest value and evenly between, and in addition a last pass
 /// wherever the function rises by more than half a spacing above the last level inside it (paper ch. 8: bumps and
-/// branches). Empty when the function is finite nowhere. Throws Error(cancelled) on request.
+/// branches). Empty when the function is finite nowhere. Throws Error(bad_usage) when that would be more than a
+/// million levels, Error(cancelled) on request.
 Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress);
 
 }  // namespace isopath

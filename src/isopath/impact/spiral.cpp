@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "isopath/core/quiet_progress.h"
+#include "isopath/impact/moved_levels.h"
 #include "isopath/impact/strip.h"
 #include "isopath/mesh/surface_walk.h"
 
@@ -138,7 +139,7 @@ class SpiralBuilder {
   bool turn_in_two(const Contour& from, const Contour& to, int splits) {
     const double level = 0.5 * (from.level + to.level);
     QuietProgress quiet(progress_);
-    for (const Contour& middle : isolines(linker_.mesh(), function_, std::span(&level, 1), {}, quiet)) {
+    for (const Contour& middle : contours_beside(linker_.mesh(), function_, from, level, quiet)) {
       if (!middle.closed) continue;
       const SurfaceCurve before = curve_;
       if (turn(from, middle, splits) && turn(middle, to, splits)) return true;

@@ -63,6 +63,7 @@ SurfaceCurve closed_from(const TriangleMesh& mesh, const Contour& contour, const
 std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const SurfacePoint& to,
                                                 double longest) const {
   if ((position_of(mesh_, to) - position_of(mesh_, from)).norm() > longest) return std::nullopt;
+  if (mesh_.component_of(from.face) != mesh_.component_of(to.face)) return std::nullopt;
   if (common_face(mesh_, from, to) != no_index) return make_curve(mesh_, {from, to});
   auto walk = surface_walk(mesh_, from, to);
   if (!walk.empty()) {
@@ -82,6 +83,7 @@ std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const 
 
 void SurfaceLinker::extend(SurfaceCurve& curve, const SurfacePoint& to) const {
   if (curve.empty()) return curve.add(mesh_, to);
+  if (mesh_.component_of(curve.points.back().face) != mesh_.component_of(to.face)) return curve.add(mesh_, to);
   const double straight = (position_of(mesh_, to) - curve.positions.back()).norm();
   // the way over a sharp edge can be many times as long as the straight one
   for (double longest = 4 * straight + mesh_.tolerance().length; longest < 16 * mesh_.size(); longest *= 4) {

@@ -36,4 +36,9 @@ RefinedMesh refine(const TriangleMesh& mesh, const std::function<bool(const Refi
 /// Every triangle split 1-to-4, once.
 RefinedMesh split_uniformly(const TriangleMesh& mesh);
 
+/// Halves edges, the longest first, until none is longer than `longest` mm or one more round would lead to more than
+/// `most_faces` triangles. Slivers are divided mostly along their length; angles may get worse. For pictures and
+/// samples, not for computing on. Throws Error(bad_usage) unless `longest` is positive.
+RefinedMesh split_long_edges(const TriangleMesh& mesh, double longest, Index most_faces);
+
 }  // namespace isopath

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "isopath/core/segment.h"
+
 namespace isopath {
 namespace {
 
@@ -29,10 +31,8 @@ struct OnTriangle {
 /// Nearest point on the side from corner i to the next one.
 OnTriangle nearest_on_side(const std::array<Vec3, 3>& p, int i, const Vec3& q) {
   const int j = (i + 1) % 3;
-  const Vec3 side = p[j] - p[i];
-  const double length2 = side.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((q - p[i]).dot(side) / length2, 0.0, 1.0) : 0.0;
-  OnTriangle out{Vec3::Zero(), (p[i] + t * side - q).squaredNorm()};
+  const double t = nearest_on_segment(p[i], p[j], q);
+  OnTriangle out{Vec3::Zero(), (p[i] + t * (p[j] - p[i]) - q).squaredNorm()};
   out.barycentric[i] = 1 - t;
   out.barycentric[j] = t;
   return out;

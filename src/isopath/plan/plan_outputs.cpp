@@ -58,7 +58,8 @@ std::string summary_json(const PlanResult& result) {
                   {"peak_memory_mb", result.peak_memory_mb},
                   {"warnings", result.warnings}};
   if (result.scallop) summary["scallop"] = scallop_json(result);
-  return summary.dump(2) + "\n";
+  // a file may have any name, JSON only holds UTF-8
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesystem::path& folder) {

@@ -78,17 +78,21 @@ std::string plan_report(const PlanResult& result) {
   data.title = result.job.mesh.filename().string();
   data.subtitle = fmt::format("{} path, {} mm between passes", name_of(std::optional(result.pattern)), text(w));
   data.mesh = &result.part.mesh;
+  data.shown = &result.display.refined;
   data.scalars = {
-      {.name = result.pattern == Pattern::planar ? "height" : "distance", .unit = "mm", .values = result.distances},
-      {.name = "gap", .unit = "mm", .values = result.gap.vertex_gap, .least = 0, .greatest = 2 * w, .limit = 1.02 * w}};
+      {.name = result.pattern == Pattern::planar ? "height" : "distance",
+       .unit = "mm",
+       .values = result.display.distances},
+      {.name = "gap", .unit = "mm", .values = result.display.gap, .least = 0, .greatest = 2 * w, .limit = 1.02 * w}};
   if (result.scallop) {
     const double wanted = result.job.scallop;
-    data.scalars.push_back({.name = "scallop",
-                            .unit = "mm",
-                            .values = result.scallop->measured.vertex_height,
-                            .least = 0,
-                            .greatest = 2 * wanted,
-                            .limit = 1.02 * wanted});
+    data.scalars.push_back(
+        {.name = "scallop",
+         .unit = "mm",
+         .values = interpolated(result.part.mesh, result.scallop->measured.vertex_height, result.display.refined),
+         .least = 0,
+         .greatest = 2 * wanted,
+         .limit = 1.02 * wanted});
   }
   data.isolines = isolines_of(result);
   data.impact = &result.impact.curve;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,8 +14,10 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
+#include "isopath/impact/cover_field.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
+#include "isopath/plan/part_checks.h"
 #include "isopath/plan/scallop_metric.h"
 #include "isopath/tool/make_tool_path.h"
 
@@ -27,6 +30,9 @@ constexpr double passes_over_size = 60;
 /// So many passes across a part of a metre lie 0.05 mm apart, finer than any finishing. More of them are a slip of the
 /// keyboard or of the unit, and would run for days.
 constexpr double most_passes = 20000;
+/// The tool's path may leave out no more than this of the spacing, whatever tolerance the job allows: on a part of a
+/// millimetre a hundredth of one is half the way to the next pass.
+constexpr double most_chord_over_spacing = 0.02;
 /// Lifts higher than so many sizes of the part leave no digits for the part itself.
 constexpr double most_clearance_over_size = 1000;
 
@@ -158,6 +164,19 @@ double length_ratio_of(const PlanResult& result, const IntrinsicGeometry* metric
   return cover_length(mesh, result.impact.curve, *metric) * result.spacing / area_in(mesh, *metric);
 }
 
+/// Half a spacing is the size of what the path can be rounded by without leaving gaps.
+void warn_of_axis_jumps(const PlanResult& result, std::vector<std::string>& warnings, const Progress& progress) {
+  if (result.job.tool.axis_mode != AxisMode::surface_normal) return;
+  const double reach = 0.5 * result.spacing;
+  const AxisJumps jumps = axis_jumps(result.impact.curve, reach, progress);
+  if (jumps.count == 0) return;
+  warnings.push_back(
+      fmt::format("the tool axis turns by more than 30 degrees within {:.3g} mm at {} places, by {:.0f} degrees at "
+                  "({:.4g}, {:.4g}, {:.4g}): a machine slows down or swings out there; a fixed axis, or a part with "
+                  "rounded edges, avoids it",
+                  reach, jumps.count, jumps.worst * 180 / std::numbers::pi, jumps.at.x(), jumps.at.y(), jumps.at.z()));
+}
+
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
@@ -175,6 +194,17 @@ std::optional<IntrinsicGeometry> warp_for_scallop(const Job& job, PlanResult& re
   return IntrinsicGeometry(result.part.mesh, metric.edge_lengths);
 }
 
+void measure(PlanResult& result, const IntrinsicGeometry* metric, Progress& progress) {
+  progress.stage("gap");
+  const TriangleMesh& mesh = result.part.mesh;
+  const CoverField cover = distance_from_cover(mesh, result.impact.curve, result.spacing, progress, metric);
+  result.gap = measure_gap(cover, result.spacing, progress);
+  if (!result.job.report) return;
+  DisplaySurface& display = result.display;
+  display.gap = values_at_vertices(cover.field, display.refined, cover.field.vertex_distances(), progress);
+  for (double& gap : display.gap) gap *= 2;
+}
+
 }  // namespace
 
 PlanResult run_plan(const Job& job, Progress& progress) {
@@ -188,12 +218,14 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   clock.ends("read");
 
+  if (auto warning = warning_of_size(mesh.size())) result.warnings.push_back(*std::move(warning));
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
   const std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
   Field field = field_of(job, result.part, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
+  check_facing(mesh, field.at_vertices, job.tool);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
   clock.ends("field");
 
@@ -203,10 +235,14 @@ PlanResult run_plan(const Job& job, Progress& progress) {
       {.pattern = result.pattern, .spacing = result.spacing, .clearance = job.clearance, .metric = metric}, progress);
   append(result.warnings, result.impact.warnings);
   result.distances = std::move(field.at_vertices);
+  if (job.report) {
+    result.display.refined = refine_for_display(mesh, result.spacing);
+    result.display.distances = values_at_vertices(*field.function, result.display.refined, result.distances, progress);
+  }
   field.function.reset();  // its windows are the largest thing in memory, and the gap needs windows of its own
   clock.ends("impact");
 
-  result.gap = measure_gap(mesh, result.impact.curve, result.spacing, progress, metric);
+  measure(result, metric, progress);
   result.figures = path_figures(result.impact.curve, result.spacing);
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
@@ -218,7 +254,10 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   }
 
   progress.stage("tool path");
-  result.tool = make_tool_path(result.impact.curve, job.tool, progress);
+  ToolOptions tool = job.tool;
+  tool.chord_tolerance = std::min(tool.chord_tolerance, most_chord_over_spacing * result.spacing);
+  result.tool = make_tool_path(result.impact.curve, tool, progress);
+  warn_of_axis_jumps(result, result.warnings, progress);
   clock.ends("tool");
 
   progress.stage("program");

@@ -7,6 +7,7 @@
 #include "isopath/core/progress.h"
 #include "isopath/impact/gap.h"
 #include "isopath/impact/impact_plan.h"
+#include "isopath/plan/display_surface.h"
 #include "isopath/plan/job.h"
 #include "isopath/plan/load_part.h"
 #include "isopath/plan/output_folder.h"
@@ -37,6 +38,7 @@ struct PlanResult {
   Pattern pattern = Pattern::spiral;
   std::vector<double> distances;  ///< at every vertex: from the sources, or the height for planar; infinity: unreached
   ImpactPlan impact;
+  DisplaySurface display;  ///< empty where the job wants no report
   GapReport gap;
   /// Covering length × spacing / area: 1 is the least that evenly spaced passes need. With a scallop, both in the
   /// ball's metric.

@@ -15,7 +15,10 @@ namespace {
 
 void check(const ReportData& data) {
   if (data.mesh == nullptr) throw Error(ErrorCode::bad_usage, "a report needs a mesh");
-  const auto n_vertices = static_cast<std::size_t>(data.mesh->n_vertices());
+  if (data.shown != nullptr && data.shown->mesh.n_vertices() < data.mesh->n_vertices())
+    throw Error(ErrorCode::bad_usage, "the mesh that is shown is not a refinement of the report's mesh");
+  const auto n_vertices =
+      static_cast<std::size_t>((data.shown != nullptr ? data.shown->mesh : *data.mesh).n_vertices());
   for (const VertexScalar& scalar : data.scalars) {
     if (scalar.values.size() == n_vertices) continue;
     throw Error(ErrorCode::bad_usage, "a scalar of the report has not one value for each vertex",

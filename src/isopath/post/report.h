@@ -6,12 +6,14 @@
 
 #include "isopath/core/geometry.h"
 #include "isopath/impact/impact_curve.h"
+#include "isopath/mesh/refine.h"
 #include "isopath/mesh/triangle_mesh.h"
 #include "isopath/tool/tool_path.h"
 
 namespace isopath {
 
-/// A value at every vertex of the mesh that the report can colour the surface by: distance, gap, thickness, curvature.
+/// A value at every vertex of the mesh that is shown, which the report can colour the surface by: distance, gap,
+/// thickness, curvature.
 struct VertexScalar {
   std::string name;            ///< as the reader knows it, for example "gap"
   std::string unit;            ///< "mm"; empty for a plain number
@@ -64,6 +66,8 @@ struct ReportData {
   std::string title;
   std::string subtitle = {};           ///< for example the command that made the plan
   const TriangleMesh* mesh = nullptr;  ///< required
+  /// A finer mesh of the same surface whose vertices the scalars belong to; without it, those of the mesh itself.
+  const RefinedMesh* shown = nullptr;
   std::vector<VertexScalar> scalars = {};
   std::vector<ReportIsoline> isolines = {};
   const ImpactCurve* impact = nullptr;
@@ -75,7 +79,8 @@ struct ReportData {
 
 /// The report as one HTML page that opens from disk without network: the part in three dimensions with its scalars,
 /// isolines, path and moving tool, and the tables and histograms. Coordinates are stored in single precision relative
-/// to the centre of the part. Throws Error(bad_usage) when the mesh is missing or a scalar has not one value a vertex.
+/// to the centre of the part. Throws Error(bad_usage) when the mesh is missing, the shown one is not a refinement of
+/// it, or a scalar has not one value a vertex.
 std::string report_html(const ReportData& data);
 
 }  // namespace isopath

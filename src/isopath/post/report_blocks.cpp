@@ -67,11 +67,16 @@ class Blocks {
 
 json optional_number(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
+bool is_refined(const ReportData& data) {
+  return data.shown != nullptr && data.shown->mesh.n_faces() > data.mesh->n_faces();
+}
+
 json meta_of(const ReportData& data, const Vec3& origin) {
   json meta;
   meta["format"] = 1;
   meta["origin"] = {origin.x(), origin.y(), origin.z()};
   meta["area"] = data.mesh->area();
+  meta["refined"] = is_refined(data);
   meta["scalars"] = json::array();
   for (const VertexScalar& scalar : data.scalars) {
     meta["scalars"].push_back({{"name", scalar.name},
@@ -121,14 +126,24 @@ std::vector<float> floats_of(const Points& points, const Get& get) {
   return values;
 }
 
-void add_mesh(Blocks& blocks, const TriangleMesh& mesh) {
-  blocks.add_positions("mesh-positions", mesh.soup().positions, [](const Vec3& p) { return p; });
+void add_triangles(Blocks& blocks, std::string_view id, const TriangleMesh& mesh) {
   std::vector<std::uint32_t> corners;
   corners.reserve(3 * mesh.soup().triangles.size());
   for (const Triangle& triangle : mesh.soup().triangles) {
-    for (Index vertex : triangle) corners.push_back(static_cast<std::uint32_t>(vertex));
+    for (const Index vertex : triangle) corners.push_back(static_cast<std::uint32_t>(vertex));
   }
-  blocks.add("mesh-triangles", corners);
+  blocks.add(id, corners);
+}
+
+/// The shown mesh and, where it is finer than the part's own, the part's triangles (its vertices come first among the
+/// shown ones) with the one that each shown triangle is a part of.
+void add_mesh(Blocks& blocks, const ReportData& data) {
+  const TriangleMesh& shown = data.shown != nullptr ? data.shown->mesh : *data.mesh;
+  blocks.add_positions("mesh-positions", shown.soup().positions, [](const Vec3& p) { return p; });
+  add_triangles(blocks, "mesh-triangles", shown);
+  if (!is_refined(data)) return;
+  add_triangles(blocks, "part-triangles", *data.mesh);
+  blocks.add("mesh-parents", std::vector<std::uint32_t>(data.shown->old_face.begin(), data.shown->old_face.end()));
 }
 
 void add_isolines(Blocks& blocks, const std::vector<ReportIsoline>& isolines) {
@@ -158,7 +173,7 @@ std::string report_blocks(const ReportData& data) {
   Blocks blocks(origin);
   const json meta = meta_of(data, origin);
   blocks.add_meta(meta);
-  add_mesh(blocks, *data.mesh);
+  add_mesh(blocks, data);
   for (std::size_t i = 0; i < data.scalars.size(); ++i) {
     blocks.add(fmt::format("scalar-{}", i), floats_of(data.scalars[i].values, [](double value) { return value; }));
   }

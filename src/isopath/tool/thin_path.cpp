@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/core/segment.h"
+
 namespace isopath {
 namespace {
 
@@ -12,10 +14,8 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b
 
 // How far the point is from the move a to b, as a multiple of the tolerances.
 double excess(const ToolPoint& point, const ToolPoint& a, const ToolPoint& b, double chord, double angle) {
-  const Vec3 move = b.tip - a.tip;
-  const double squared = move.squaredNorm();
-  const double u = squared > 0 ? std::clamp((point.tip - a.tip).dot(move) / squared, 0.0, 1.0) : 0.0;
-  const double distance = (point.tip - (a.tip + u * move)).norm();
+  const double u = nearest_on_segment(a.tip, b.tip, point.tip);
+  const double distance = (point.tip - mix(a.tip, b.tip, u)).norm();
   const double turn = angle_between(point.axis, axis_between(a.axis, b.axis, u));
   // An axis tolerance of 0 asks for equal axes: 1e-15 is the rounding error of two unit vectors.
   return std::max(distance / chord, turn / std::max(angle, 1e-15));

@@ -1,4 +1,4 @@
-// Writes a report of a wavy disc with a spiral, all from formulas: report_sample FILE [RINGS].
+// Writes a report of a wavy disc with a spiral, all from formulas: report_sample FILE [RINGS [STAND_OFF]].
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -131,12 +131,14 @@ double gap_at(double r, double angle) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "report_sample FILE [RINGS]\n";
+    std::cerr << "report_sample FILE [RINGS [STAND_OFF]]\n";
     return 2;
   }
   const TriangleMesh mesh(disc(argc > 2 ? std::atoi(argv[2]) : 60));
   Spiral spiral;
   spiral.plan();
+  const double stand_off = argc > 3 ? std::atof(argv[3]) : 0;
+  for (ToolPoint& point : spiral.tool.points) point.tip += stand_off * point.axis;
 
   VertexScalar distance{.name = "distance", .unit = "mm", .values = {}};
   VertexScalar gap{.name = "gap", .unit = "mm", .values = {}, .limit = 1.02 * spacing};

@@ -1,0 +1,88 @@
+#include "isopath/plan/part_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "isopath/core/error.h"
+
+namespace isopath {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double smallest_part = 1;     ///< mm
+constexpr double largest_part = 20000;  ///< mm
+constexpr double jump = 30 * degree;
+constexpr double facing_away = degree;  ///< beyond a right angle
+constexpr double share_facing_away = 1e-3;
+
+}  // namespace
+
+std::optional<std::string> warning_of_size(double size) {
+  if (size >= smallest_part && size <= largest_part) return std::nullopt;
+  return fmt::format("the part measures {:.4g} mm: if its file is in {}, give --unit (in a job: unit)", size,
+                     size < smallest_part ? "metres or inches" : "another unit than mm");
+}
+
+void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool) {
+  if (tool.axis_mode != AxisMode::fixed_direction) return;
+  const Vec3 axis = tool.fixed_axis.normalized();
+  double reached = 0;
+  double away = 0;
+  Index worst = no_index;
+  double least = -std::sin(facing_away);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const Triangle& corners = mesh.triangle(f);
+    if (!std::all_of(corners.begin(), corners.end(), [&](Index v) { return distances[v] < infinity; })) continue;
+    const double area = mesh.face_area(f);
+    reached += area;
+    const double cosine = mesh.face_normal(f).dot(axis);
+    if (cosine >= -std::sin(facing_away)) continue;
+    away += area;
+    if (cosine >= least) continue;
+    least = cosine;
+    worst = f;
+  }
+  if (away <= share_facing_away * reached) return;
+  const Vec3 place = mesh.position(mesh.triangle(worst)[0]);
+  throw Error(
+      ErrorCode::no_plan, "the surface faces away from the fixed tool axis",
+      {.element = fmt::format("triangle {} at ({:.4g}, {:.4g}, {:.4g})", worst, place.x(), place.y(), place.z()),
+       .value = fmt::format("{:.1f} degrees between normal and axis, limit 90; {:.3g} % of the area",
+                            std::acos(std::max(least, -1.0)) / degree, 100 * away / reached),
+       .advice = "use the surface normal as axis, turn the part, or cover only the part that faces the tool"});
+}
+
+AxisJumps axis_jumps(const ImpactCurve& curve, double reach, const Progress& progress) {
+  AxisJumps jumps;
+  std::vector<double> arc(curve.points.size(), 0.0);
+  std::size_t first = 0;  // of the stretch without lifts, within reach
+  double last_jump = -infinity;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    if (i % 256 == 0) progress.checkpoint();
+    const ImpactPoint& point = curve.points[i];
+    arc[i] = arc[i - 1] + (point.position - curve.points[i - 1].position).norm();
+    if (point.kind == MoveKind::lift) {
+      first = i;
+      continue;
+    }
+    while (arc[i] - arc[first] > reach && first + 1 < i) ++first;
+    double most = 0;
+    for (std::size_t j = first; j < i; ++j) {
+      const Vec3& before = curve.points[j].normal;
+      most = std::max(most, std::atan2(before.cross(point.normal).norm(), before.dot(point.normal)));
+    }
+    if (most <= jump) continue;
+    if (arc[i] - last_jump > reach) ++jumps.count;
+    last_jump = arc[i];
+    if (most <= jumps.worst) continue;
+    jumps.worst = most;
+    jumps.at = point.position;
+  }
+  return jumps;
+}
+
+}  // namespace isopath

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "isopath/core/progress.h"
+#include "isopath/impact/impact_curve.h"
+#include "isopath/mesh/triangle_mesh.h"
+#include "isopath/tool/tool_model.h"
+
+namespace isopath {
+
+/// Says that the part is smaller than a millimetre or larger than 20 m: more likely its file is in another unit.
+std::optional<std::string> warning_of_size(double size);
+
+/// Throws Error(no_plan) when more than a thousandth of the area that the sources reach (finite `distances`) faces away
+/// from a fixed tool axis by more than a degree. The tool path would refuse such a part, but only once it is planned.
+void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool);
+
+/// Places where the normal, and with it the axis of a tool that stands along it, turns by more than 30 degrees within a
+/// short way along the surface.
+struct AxisJumps {
+  Index count = 0;
+  double worst = 0;        ///< rad
+  Vec3 at = Vec3::Zero();  ///< where the worst one is
+};
+/// `reach` is the short way, mm. Turns nearer than it to each other count once. Throws Error(cancelled) on request.
+AxisJumps axis_jumps(const ImpactCurve& curve, double reach, const Progress& progress = Progress::none());
+
+}  // namespace isopath

@@ -1,0 +1,87 @@
+#include "isopath/plan/part_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "isopath/core/error.h"
+#include "support/test_meshes.h"
+
+namespace isopath {
+namespace {
+
+TEST(PartChecks, WarnOfSizesThatAnotherUnitWouldExplain) {
+  EXPECT_TRUE(warning_of_size(0.9));
+  EXPECT_TRUE(warning_of_size(20001));
+  EXPECT_FALSE(warning_of_size(1));
+  EXPECT_FALSE(warning_of_size(20000));
+}
+
+/// A path along x over a ridge: flat, then turned by `angle` about y from x = 0 on, points every `step`.
+ImpactCurve over_a_ridge(double angle, double step) {
+  ImpactCurve curve;
+  for (double x = -5; x <= 5; x += step) {
+    ImpactPoint point;
+    point.kind = MoveKind::cover;
+    point.position = Vec3(x, 0, 0);
+    point.normal = x < 0 ? Vec3(0, 0, 1) : Vec3(std::sin(angle), 0, std::cos(angle));
+    curve.points.push_back(point);
+  }
+  return curve;
+}
+
+TEST(AxisJumps, AreCountedWhereTheNormalTurnsByMoreThanThirtyDegrees) {
+  for (const double step : {0.01, 0.3, 2.0}) {
+    for (const double degrees : {10.0, 29.0, 31.0, 90.0, 179.0}) {
+      const double angle = degrees * std::numbers::pi / 180;
+      const AxisJumps jumps = axis_jumps(over_a_ridge(angle, step), 1);
+      EXPECT_EQ(jumps.count, degrees > 30 ? 1 : 0) << degrees << " degrees, step " << step;
+      if (degrees < 30) continue;
+      EXPECT_NEAR(jumps.worst, angle, 1e-9);
+      EXPECT_NEAR(jumps.at.x(), 0, std::max(step, 1.0)) << "step " << step;
+    }
+  }
+}
+
+TEST(AxisJumps, AreNotSeenInASlowTurnNorAcrossALift) {
+  // a quarter circle of radius 10 turns by 5.7 degrees a millimetre
+  ImpactCurve curve;
+  for (double t = 0; t < std::numbers::pi / 2; t += 0.01) {
+    ImpactPoint point;
+    point.kind = MoveKind::cover;
+    point.normal = Vec3(std::cos(t), std::sin(t), 0);
+    point.position = 10 * point.normal;
+    curve.points.push_back(point);
+  }
+  EXPECT_EQ(axis_jumps(curve, 1).count, 0);
+  EXPECT_GT(axis_jumps(curve, 6).count, 0);
+
+  ImpactCurve lifted = over_a_ridge(1.5, 0.1);
+  for (ImpactPoint& point : lifted.points) {
+    if (std::abs(point.position.x()) < 0.3) point.kind = MoveKind::lift;
+  }
+  EXPECT_EQ(axis_jumps(lifted, 1).count, 0);
+}
+
+TEST(CheckFacing, RefusesWhatTheSourcesReachAndTheToolDoesNot) {
+  const TriangleMesh sphere = test::icosphere(10, 3);
+  const ToolOptions up{.axis_mode = AxisMode::fixed_direction, .fixed_axis = {0, 0, 3}};
+  std::vector<double> distances(sphere.n_vertices(), 1.0);
+  try {
+    check_facing(sphere, distances, up);
+    FAIL() << "half a sphere faces away";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_plan);
+    EXPECT_NE(error.where().value.find("% of the area"), std::string::npos);
+  }
+  check_facing(sphere, distances, {});  // along the normals anything can be reached
+  for (Index v = 0; v < sphere.n_vertices(); ++v) {
+    if (sphere.position(v).z() < 0.5) distances[v] = infinity;
+  }
+  check_facing(sphere, distances, up);
+}
+
+}  // namespace
+}  // namespace isopath
