@@ -130,6 +130,26 @@ TEST(Warp, TrianglesAreSplitUntilBothTestsHold) {
   }
 }
 
+TEST(Warp, ShortEdgesAreNotWorthSplitting) {
+  const TriangleMesh mesh = planar_grid(4, 4, 1, 1);
+  const auto tensors = tensors_on(mesh, [](const Vec3& p) { return round(std::exp(3 * p.x())); });
+  const auto n_faces = [&](double shortest) {
+    return warp_surface(mesh, tensors, {.midpoint_shift = 0.001, .shortest_edge = shortest, .max_levels = 5})
+        .refined.mesh.n_faces();
+  };
+  const WarpedSurface surface =
+      warp_surface(mesh, tensors, {.midpoint_shift = 0.001, .shortest_edge = 0.5, .max_levels = 5});
+  const TriangleMesh& fine = surface.refined.mesh;
+  EXPECT_GT(fine.n_faces(), mesh.n_faces());
+  EXPECT_LT(fine.n_faces(), n_faces(0) / 10);
+  EXPECT_EQ(n_faces(100), mesh.n_faces());
+  for (Index f = 0; f < fine.n_faces(); ++f) {
+    double longest = 0;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) longest = std::max(longest, surface.edge_lengths[fine.edge_of(h)]);
+    EXPECT_GT(longest, 0.2) << "what was split had an edge longer than 0.5";
+  }
+}
+
 TEST(Warp, BrokenTrianglesAreMendedBySplittingFirst) {
   // every second vertex stretches along the diagonals: they get longer than the two sides together
   const TriangleMesh mesh = planar_grid(4, 4, 1, 1);
@@ -174,6 +194,7 @@ TEST(Warp, RefusesTensorsThatMeasureNothing) {
   EXPECT_NE(what(bad).find("vertex 4"), std::string::npos);
   EXPECT_NE(what(good, {.midpoint_shift = 0.5}).find("midpoint_shift"), std::string::npos);
   EXPECT_NE(what(good, {.length_excess = 0}).find("length_excess"), std::string::npos);
+  EXPECT_NE(what(good, {.shortest_edge = -1}).find("shortest_edge"), std::string::npos);
   EXPECT_NE(what(good, {.max_levels = -1}).find("max_levels"), std::string::npos);
 }
 

@@ -65,11 +65,11 @@ TEST(ScallopPlan, PlanarPassesAreOnlyMeasured) {
 TEST(ScallopPlan, SaysWhereTheBallDoesNotFit) {
   TriangleSoup soup = open_cylinder(60, 6, 8, 20).soup();
   for (Triangle& t : soup.triangles) std::swap(t[1], t[2]);
-  const ScallopMetric metric = scallop_metric(TriangleMesh(std::move(soup)), 10);
+  const ScallopMetric metric = scallop_metric(TriangleMesh(std::move(soup)), 10, 1);
   EXPECT_NEAR(metric.gouged_fraction, 1, 1e-9);
   ASSERT_FALSE(metric.warnings.empty());
   EXPECT_NE(metric.warnings[0].find("does not fit"), std::string::npos);
-  EXPECT_TRUE(scallop_metric(open_cylinder(60, 6, 8, 20), 10).warnings.empty());
+  EXPECT_TRUE(scallop_metric(open_cylinder(60, 6, 8, 20), 10, 1).warnings.empty());
 }
 
 TEST(ScallopPlan, LengthAndAreaInAMetric) {

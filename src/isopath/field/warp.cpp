@@ -95,6 +95,7 @@ class Splitter {
       const Vec3 half = 0.5 * (triangle.position[j] - triangle.position[i]);
       const MetricTensor middle = at(triangle.face, 0.5 * (triangle.barycentric[i] + triangle.barycentric[j]));
       length[i] = edge_length(2 * half, corner[i], corner[j], options_.blend);
+      if (length[i] <= options_.shortest_edge) continue;
       const double first = edge_length(half, corner[i], middle, options_.blend);
       const double sum = first + edge_length(half, middle, corner[j], options_.blend);
       if (std::abs(first - 0.5 * sum) > options_.midpoint_shift * sum) return true;
@@ -193,6 +194,7 @@ void WarpOptions::validate() const {
     refuse("midpoint_shift", fmt::format("{}; must be above 0 and below 0.5", midpoint_shift));
   }
   if (!(length_excess > 0)) refuse("length_excess", fmt::format("{}; must be above 0", length_excess));
+  if (!(shortest_edge >= 0)) refuse("shortest_edge", fmt::format("{}; must be 0 or more", shortest_edge));
   if (max_levels < 0 || max_levels > 20) refuse("max_levels", fmt::format("{}; must be 0 … 20", max_levels));
 }
 

@@ -33,6 +33,7 @@ struct WarpOptions {
   /// edge.
   double midpoint_shift = 0.02;
   double length_excess = 0.005;  ///< or their sum differs by more than this share from the edge's length; above 0
+  double shortest_edge = 0;      ///< an edge no longer than this in the metric, mm, passes both tests; 0 or more
   int max_levels = 3;            ///< times that a triangle may be split, 0 … 20; 0 keeps the mesh
 
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit

@@ -186,7 +186,7 @@ std::optional<IntrinsicGeometry> warp_for_scallop(const Job& job, PlanResult& re
   if (!(job.scallop > 0)) return std::nullopt;
   result.scallop.emplace();
   if (job.pattern == Pattern::planar) return std::nullopt;
-  ScallopMetric metric = scallop_metric(result.part.mesh, 0.5 * job.tool.ball_diameter, progress);
+  ScallopMetric metric = scallop_metric(result.part.mesh, 0.5 * job.tool.ball_diameter, result.spacing, progress);
   append(result.warnings, metric.warnings);
   result.scallop->clamped_fraction = metric.clamped_fraction;
   result.scallop->gouged_fraction = metric.gouged_fraction;

@@ -15,6 +15,9 @@ namespace {
 /// Shares of less than this are single vertices at a rough edge.
 constexpr double least_share_to_tell = 1e-4;
 
+/// An error of a fifth in such a length moves no pass by more than a twentieth of the pitch.
+constexpr double smallest_in_pitches = 0.25;
+
 /// A vertex stands for a third of the area of its faces.
 double share_of(const TriangleMesh& mesh, const std::vector<Index>& vertices) {
   std::vector<char> named(mesh.n_vertices(), 0);
@@ -31,10 +34,10 @@ double share_of(const TriangleMesh& mesh, const std::vector<Index>& vertices) {
 
 }  // namespace
 
-ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, Progress& progress) {
+ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, double pitch, Progress& progress) {
   progress.stage("metric");
   const ToolMetric tool = tool_metric(principal_curvatures(mesh, SmoothNormals(mesh)), ball_radius);
-  WarpedSurface surface = warp_surface(mesh, tool.tensors, {}, progress);
+  WarpedSurface surface = warp_surface(mesh, tool.tensors, {.shortest_edge = smallest_in_pitches * pitch}, progress);
   ScallopMetric metric;
   metric.clamped_fraction = share_of(mesh, tool.clamped);
   metric.gouged_fraction = share_of(mesh, tool.gouged);

@@ -19,8 +19,10 @@ struct ScallopMetric {
   std::vector<std::string> warnings;
 };
 
+/// For passes at this pitch: triangles smaller than a quarter of it are only split to keep the triangle inequality.
 /// Throws Error(bad_usage) unless the radius (mm) is positive, Error(cancelled) on request.
-ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, Progress& progress = Progress::none());
+ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, double pitch,
+                             Progress& progress = Progress::none());
 
 /// Length of a curve's covering moves in a metric, and the area in it.
 double cover_length(const TriangleMesh& mesh, const ImpactCurve& curve, const IntrinsicGeometry& metric);
