@@ -1,7 +1,5 @@
 #include "isopath/field/exact_distances.h"
 
-#include <utility>
-
 #include "isopath/core/error.h"
 #include "isopath/field/list_propagation.h"
 
@@ -17,7 +15,7 @@ std::vector<double> exact_distances(const TriangleMesh& mesh, const IntrinsicGeo
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   ListPropagation propagation(mesh, metric, sources, {});
   propagation.run(stop_distance, progress);
-  return std::move(propagation.vertex_distances());
+  return propagation.vertex_distances();
 }
 
 }  // namespace isopath

@@ -149,8 +149,8 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   ListPropagation::RetainedWindows retained = propagation.take_windows(progress);
   data->windows = std::move(retained.windows);
   data->first_window = std::move(retained.first);
-  data->distance = std::move(propagation.vertex_distances());
-  data->root = std::move(propagation.vertex_roots());
+  data->distance = propagation.vertex_distances();
+  data->root = propagation.vertex_roots();
   data->fans = std::move(propagation.fans());
   return ExactField(std::move(data));
 }

@@ -13,7 +13,6 @@
 namespace isopath {
 namespace {
 
-constexpr Index not_waiting = std::numeric_limits<Index>::max();
 /// Distances are sums of a few square roots; a difference below this part of the model's size decides nothing.
 constexpr double rounding = 1e-14;
 /// So few items are not worth waking another thread for.
@@ -43,19 +42,37 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
     : mesh_(mesh),
       geometry_(geometry),
       options_(options),
-      distance_(mesh.n_vertices(), infinity),
-      root_(mesh.n_vertices(), no_index),
-      arrival_(mesh.n_vertices()),
+      sites_(mesh.n_halfedges()),
+      states_(mesh.n_vertices()),
       source_at_(mesh.n_vertices(), no_index),
       fans_(options.retain ? mesh.n_halfedges() : 0),
       kept_(options.retain ? mesh.n_halfedges() : 0, nullptr),
-      waiting_(3 * static_cast<std::size_t>(mesh.n_halfedges()), nullptr),
-      bucket_of_halfedge_(mesh.n_halfedges(), not_waiting),
-      bucket_of_vertex_(mesh.n_vertices(), not_waiting),
       workshops_(options.retain),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
       margin_(rounding * geometry.size() + 2 * options.limits.accuracy) {
+  tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
+    Site& site = sites_[h];
+    site.length = geometry.length(h);
+    site.apex = geometry.apex(h);
+    site.twin = mesh.twin(h);
+    site.tail = mesh.from(h);
+  });
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) states_[sites_[h].tail].total_angle += geometry.angle_at_tail(h);
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+    states_[v].may_bend = isopath::may_bend(mesh, v, states_[v].total_angle);
   start(source_fronts(mesh, geometry, sources));
+}
+
+std::vector<double> ListPropagation::vertex_distances() const {
+  std::vector<double> distances(states_.size());
+  for (std::size_t v = 0; v < states_.size(); ++v) distances[v] = states_[v].distance;
+  return distances;
+}
+
+std::vector<Index> ListPropagation::vertex_roots() const {
+  std::vector<Index> roots(states_.size());
+  for (std::size_t v = 0; v < states_.size(); ++v) roots[v] = states_[v].root;
+  return roots;
 }
 
 std::size_t ListPropagation::window_bytes() const {
@@ -65,7 +82,7 @@ std::size_t ListPropagation::window_bytes() const {
 }
 
 Index ListPropagation::waiting_place(Index leaving) const {
-  const Index twin = mesh_.twin(leaving);
+  const Index twin = sites_[leaving].twin;
   return twin == no_index && options_.retain ? leaving : twin;
 }
 
@@ -108,65 +125,66 @@ void ListPropagation::start(const SourceFronts& fronts) {
 
 void ListPropagation::push_halfedge(Index halfedge, double least) {
   const Index bucket = std::max(bucket_, static_cast<Index>(least / bucket_width_));
-  if (bucket >= bucket_of_halfedge_[halfedge]) return;
-  bucket_of_halfedge_[halfedge] = bucket;
+  if (bucket >= sites_[halfedge].bucket) return;
+  sites_[halfedge].bucket = bucket;
   if (bucket >= static_cast<Index>(halfedges_.size())) halfedges_.resize(bucket + 1);
   halfedges_[bucket].push_back(halfedge);
 }
 
 void ListPropagation::offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival) {
   distance = std::max(distance, 0.0);
-  if (!(distance < distance_[vertex])) return;
-  distance_[vertex] = distance;
-  root_[vertex] = root;
-  arrival_[vertex] = arrival;
+  if (!(distance < states_[vertex].distance)) return;
+  states_[vertex].distance = distance;
+  states_[vertex].root = root;
+  states_[vertex].arrival = arrival;
   const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
-  if (bucket >= bucket_of_vertex_[vertex]) return;
-  bucket_of_vertex_[vertex] = bucket;
+  if (bucket >= states_[vertex].bucket) return;
+  states_[vertex].bucket = bucket;
   if (bucket >= static_cast<Index>(vertices_.size())) vertices_.resize(bucket + 1);
   vertices_[bucket].push_back(vertex);
 }
 
 void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block) {
-  WindowBlock*& first = waiting_[3 * static_cast<std::size_t>(halfedge) + feeder];
+  WindowBlock*& first = sites_[halfedge].waiting[feeder];
   block->next = first;
   first = block;
 }
 
 void ListPropagation::relax_edges(Index vertex) {
-  const double distance = distance_[vertex];
-  const double error = arrival_[vertex].error;
-  const Index root = root_[vertex];
-  Index h = mesh_.outgoing(vertex);
-  Index last = no_index;
+  const VertexState from = states_[vertex];
+  const Index first = mesh_.outgoing(vertex);
+  Index h = first;
   do {
-    const Index to = mesh_.to(h);
-    const double there = distance + geometry_.length(h);
-    if (there < distance_[to]) {
-      const Index back = mesh_.twin(h);
-      const Index next = TriangleMesh::next(h);
-      offer_vertex(to, there, root,
-                   back != no_index ? Arrival{back, 0, error} : Arrival{next, geometry_.angle_at_tail(next), error});
+    const Site& site = sites_[h];
+    const Index next = TriangleMesh::next(h);
+    const Index to = sites_[next].tail;
+    const double there = from.distance + site.length;
+    if (there < states_[to].distance) {
+      const double error = from.arrival.error;
+      offer_vertex(
+          to, there, from.root,
+          site.twin != no_index ? Arrival{site.twin, 0, error} : Arrival{next, geometry_.angle_at_tail(next), error});
     }
-    last = h;
-    h = mesh_.next_outgoing(h);
-  } while (h != no_index && h != mesh_.outgoing(vertex));
-  if (h != no_index) return;
-  const Index arriving = TriangleMesh::prev(last);  // the boundary edge that closes the fan
-  offer_vertex(mesh_.from(arriving), distance + geometry_.length(arriving), root, {arriving, 0, error});
+    const Index previous = TriangleMesh::prev(h);
+    h = sites_[previous].twin;
+    if (h == no_index) {  // the boundary edge that closes the fan
+      offer_vertex(sites_[previous].tail, from.distance + sites_[previous].length, from.root,
+                   {previous, 0, from.arrival.error});
+    }
+  } while (h != no_index && h != first);
 }
 
 double ListPropagation::arrival_angle(Index vertex) const {
-  double sum = arrival_[vertex].turn;
-  for (Index h = mesh_.outgoing(vertex); h != arrival_[vertex].halfedge; h = mesh_.next_outgoing(h))
+  double sum = states_[vertex].arrival.turn;
+  for (Index h = mesh_.outgoing(vertex); h != states_[vertex].arrival.halfedge; h = mesh_.next_outgoing(h))
     sum += geometry_.angle_at_tail(h);
   return sum;
 }
 
 void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
-  const double total = total_angle(mesh_, geometry_, vertex);
+  const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
-  if (!is_source && !may_bend(mesh_, vertex, total)) return;
+  if (!is_source && !states_[vertex].may_bend) return;
   BlockedArc behind;
   if (!is_source) behind = {arrival_angle(vertex), std::numbers::pi - angle_slack};
   const std::span<const BlockedArc> blocked =
@@ -190,9 +208,9 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
     window.begin = length - interval.end;
     window.end = length - interval.begin;
     window.source = Vec2(length, 0) - geometry_.apex(opposite);
-    window.offset = distance_[vertex];
-    window.root = root_[vertex];
-    window.error = arrival_[vertex].error;
+    window.offset = states_[vertex].distance;
+    window.root = states_[vertex].root;
+    window.error = states_[vertex].arrival.error;
     WindowBlock* block = workshop.blocks.take(1);
     workshop.blocks.arrays(block).set(0, window);
     block->size = 1;
@@ -204,8 +222,7 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
 void ListPropagation::take_lists(Index halfedge, Crossing& crossing) {
   crossing = {};
   crossing.halfedge = halfedge;
-  for (int k = 0; k < 3; ++k)
-    crossing.lists[k] = std::exchange(waiting_[3 * static_cast<std::size_t>(halfedge) + k], nullptr);
+  for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(sites_[halfedge].waiting[k], nullptr);
 }
 
 WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
@@ -303,12 +320,12 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
 
   const Index next = TriangleMesh::next(h);
   const Index previous = TriangleMesh::prev(h);
-  const StepGeometry triangle{geometry_.length(h), geometry_.apex(h), geometry_.length(previous),
-                              geometry_.length(next)};
-  const bool leaves_surface = mesh_.twin(h) == no_index;  // see waiting_place
-  const Index tail = leaves_surface ? mesh_.to(h) : mesh_.from(h);
-  const Index head = leaves_surface ? mesh_.from(h) : mesh_.to(h);
-  n = trim_by_vertices(windows, n, triangle.length, distance_[tail], distance_[head], margin_);
+  const Site& site = sites_[h];
+  const StepGeometry triangle{site.length, site.apex, sites_[previous].length, sites_[next].length};
+  const bool leaves_surface = site.twin == no_index;  // see waiting_place
+  const Index tail = sites_[leaves_surface ? next : h].tail;
+  const Index head = sites_[leaves_surface ? h : next].tail;
+  n = trim_by_vertices(windows, n, triangle.length, states_[tail].distance, states_[head].distance, margin_);
   if (trim_by_neighbours(windows, n, margin_, side_of_begin, side_of_end)) {
     std::copy_n(side_of_begin, n, windows.begin);
     std::copy_n(side_of_end, n, windows.end);
@@ -322,8 +339,8 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   crossing.n_windows = static_cast<Index>(n);
   if (n > 0 && !leaves_surface) {
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
-    const Index corner = mesh_.from(previous);
-    if (apex.distance < distance_[corner]) {
+    const Index corner = sites_[previous].tail;
+    if (apex.distance < states_[corner].distance) {
       crossing.apex_distance = apex.distance;
       const Vec2 along = -triangle.apex;
       const Vec2 back = Vec2(apex.x, 0) - triangle.apex;
@@ -366,7 +383,7 @@ WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n
 
 void ListPropagation::commit(const Crossing& crossing) {
   if (crossing.apex_distance < infinity) {
-    offer_vertex(mesh_.from(TriangleMesh::prev(crossing.halfedge)), crossing.apex_distance, crossing.apex_root,
+    offer_vertex(sites_[TriangleMesh::prev(crossing.halfedge)].tail, crossing.apex_distance, crossing.apex_root,
                  crossing.apex_arrival);
   }
   if (crossing.left != no_index) push_halfedge(crossing.left, crossing.left_least);
@@ -377,8 +394,8 @@ void ListPropagation::commit(const Crossing& crossing) {
 void ListPropagation::run_vertices() {
   active_.clear();
   for (const Index v : std::exchange(vertices_[bucket_], {})) {
-    if (bucket_of_vertex_[v] != bucket_) continue;
-    bucket_of_vertex_[v] = not_waiting;
+    if (states_[v].bucket != bucket_) continue;
+    states_[v].bucket = not_waiting;
     active_.push_back(v);
   }
   share(active_.size(), [&](std::size_t first, std::size_t past) {
@@ -387,12 +404,13 @@ void ListPropagation::run_vertices() {
   });
   for (const Index v : active_) {
     relax_edges(v);
+    if (!states_[v].may_bend && source_at_[v] == no_index) continue;
     Index h = mesh_.outgoing(v);
     do {
-      const Index t = waiting_place(TriangleMesh::next(h));
-      if (t != no_index && waiting_[3 * static_cast<std::size_t>(t) + from_corner] != nullptr)
-        push_halfedge(t, waiting_[3 * static_cast<std::size_t>(t) + from_corner]->least);
-      h = mesh_.next_outgoing(h);
+      const Index place = waiting_place(TriangleMesh::next(h));
+      if (place != no_index && sites_[place].waiting[from_corner] != nullptr)
+        push_halfedge(place, sites_[place].waiting[from_corner]->least);
+      h = sites_[TriangleMesh::prev(h)].twin;
     } while (h != no_index && h != mesh_.outgoing(v));
   }
 }
@@ -400,12 +418,15 @@ void ListPropagation::run_vertices() {
 void ListPropagation::run_lists() {
   active_.clear();
   for (const Index h : std::exchange(halfedges_[bucket_], {})) {
-    if (bucket_of_halfedge_[h] != bucket_) continue;
-    bucket_of_halfedge_[h] = not_waiting;
+    if (sites_[h].bucket != bucket_) continue;
+    sites_[h].bucket = not_waiting;
     active_.push_back(h);
   }
   crossings_.resize(active_.size());
-  for (std::size_t i = 0; i < active_.size(); ++i) take_lists(active_[i], crossings_[i]);
+  // All are taken before one crosses: what crosses may be put down where another one waits.
+  share(active_.size(), [&](std::size_t first, std::size_t past) {
+    for (std::size_t i = first; i < past; ++i) take_lists(active_[i], crossings_[i]);
+  });
   share(active_.size(), [&](std::size_t first, std::size_t past) {
     Workshop& workshop = workshops_.local();
     for (std::size_t i = first; i < past; ++i) cross(crossings_[i], workshop);

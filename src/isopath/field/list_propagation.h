@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -47,8 +48,8 @@ class ListPropagation {
   /// The lower envelope on every edge of all that was propagated; once, after run().
   RetainedWindows take_windows(Progress& progress);
 
-  std::vector<double>& vertex_distances() { return distance_; }
-  std::vector<Index>& vertex_roots() { return root_; }
+  std::vector<double> vertex_distances() const;
+  std::vector<Index> vertex_roots() const;
   /// Per half-edge.
   std::vector<FanArc>& fans() { return fans_; }
   std::size_t propagated() const { return propagated_; }
@@ -57,11 +58,31 @@ class ListPropagation {
   std::size_t window_bytes() const;
 
  private:
+  static constexpr Index not_waiting = std::numeric_limits<Index>::max();
+
   /// How the shortest way reaches a vertex: the way back turns by `turn` counter-clockwise from an outgoing half-edge.
   struct Arrival {
     Index halfedge = no_index;
     double turn = 0;
     double error = 0;  ///< most that the distance is off, by merging windows
+  };
+  /// All that is needed of a half-edge, on one line of the cache.
+  struct alignas(64) Site {
+    WindowBlock* waiting[3] = {nullptr, nullptr, nullptr};  ///< by Feeder
+    double length = 0;
+    Vec2 apex = Vec2::Zero();
+    Index twin = no_index;
+    Index tail = no_index;
+    Index bucket = not_waiting;
+  };
+  /// And of a vertex.
+  struct alignas(64) VertexState {
+    double distance = infinity;
+    Arrival arrival;
+    double total_angle = 0;
+    Index root = no_index;
+    Index bucket = not_waiting;
+    bool may_bend = false;
   };
   /// A list that crossed, with its windows behind it in memory.
   struct KeptList {
@@ -130,18 +151,14 @@ class ListPropagation {
   const TriangleMesh& mesh_;
   const IntrinsicGeometry& geometry_;
   Options options_;
-  std::vector<double> distance_;
-  std::vector<Index> root_;
-  std::vector<Arrival> arrival_;
+  std::vector<Site> sites_;
+  std::vector<VertexState> states_;
   std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none
   std::vector<std::vector<BlockedArc>> source_arcs_;
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained
   std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
-  std::vector<WindowBlock*> waiting_;                   ///< three per half-edge
-  std::vector<Index> bucket_of_halfedge_;
-  std::vector<Index> bucket_of_vertex_;
-  std::vector<std::vector<Index>> halfedges_;  ///< by bucket
+  std::vector<std::vector<Index>> halfedges_;           ///< by bucket
   std::vector<std::vector<Index>> vertices_;
   std::vector<Index> active_;
   std::vector<Crossing> crossings_;

@@ -63,8 +63,9 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
     envelope.insert(s->second);
   }
   const auto follow_from = [&](Index vertex, double x) {
-    if (distance_[vertex] == infinity) return;
-    envelope.insert(along_edge(x, length, distance_[vertex], arrival_[vertex].error, root_[vertex]));
+    if (states_[vertex].distance == infinity) return;
+    envelope.insert(
+        along_edge(x, length, states_[vertex].distance, states_[vertex].arrival.error, states_[vertex].root));
   };
   follow_from(mesh_.from(canonical), 0);
   follow_from(mesh_.to(canonical), length);
