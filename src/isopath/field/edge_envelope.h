@@ -22,6 +22,7 @@ class EdgeEnvelope {
   void merge(const MergeLimits& limits);
 
   const std::vector<Window>& windows() const { return windows_; }
+  std::vector<Window>& windows() { return windows_; }
 
  private:
   struct Part {

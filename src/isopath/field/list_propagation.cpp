@@ -19,6 +19,9 @@ constexpr double rounding = 1e-14;
 constexpr std::size_t worth_sharing = 32;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
 constexpr double bucket_width = 0.5;
+/// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
+/// the one before: after so many times a half-edge begins to remember what crossed.
+constexpr Index lists_without_memory = 64;
 constexpr std::size_t kept_chunk = 1 << 16;
 
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
@@ -331,6 +334,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     std::copy_n(side_of_end, n, windows.end);
     n = drop_empty(windows, n);
   }
+  if (site.memory > 0) windows = news(windows, n, h, workshop);
   if (options_.limits.accuracy > 0) windows = merged(windows, n, mesh_.edge_of(h), workshop);
   if (options_.retain && n > 0) {
     KeptList* list = workshop.keep(windows, n);
@@ -368,6 +372,25 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   if (owner != nullptr) workshop.blocks.give_back(owner);
 }
 
+WindowArrays ListPropagation::news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop) {
+  constexpr Index is_new = 0;  // in place of a half-edge, of which the envelope takes no notice
+  EdgeEnvelope& memory = memories_[sites_[halfedge].memory - 1];
+  for (std::size_t i = 0; i < n; ++i) {
+    Window window = windows.window(i);
+    window.halfedge = is_new;
+    window.offset += margin_;  // what is nearer by less than rounding is no news
+    memory.insert(window);
+  }
+  const WindowArrays to = workshop.scratch(2, memory.windows().size());
+  n = 0;
+  for (Window& window : memory.windows()) {
+    if (std::exchange(window.halfedge, no_index) != is_new) continue;
+    window.offset -= margin_;
+    to.set(n++, window);
+  }
+  return to;
+}
+
 WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n, Index edge,
                                      Workshop& workshop) const {
   EdgeEnvelope& envelope = workshop.envelope;
@@ -375,7 +398,7 @@ WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n
   for (std::size_t i = 0; i < n; ++i) envelope.insert(windows.window(i));
   envelope.merge(options_.limits);
   const std::vector<Window>& left = envelope.windows();
-  const WindowArrays to = left.size() <= n ? windows : workshop.scratch(2, left.size());
+  const WindowArrays to = left.size() <= n ? windows : workshop.scratch(3, left.size());
   n = left.size();
   for (std::size_t i = 0; i < n; ++i) to.set(i, left[i]);
   return to;
@@ -421,6 +444,9 @@ void ListPropagation::run_lists() {
     if (sites_[h].bucket != bucket_) continue;
     sites_[h].bucket = not_waiting;
     active_.push_back(h);
+    if (sites_[h].memory > 0 || --sites_[h].memory > -lists_without_memory) continue;
+    memories_.emplace_back().reset(sites_[h].length, snap_width(mesh_.edge_of(h)));
+    sites_[h].memory = static_cast<Index>(memories_.size());
   }
   crossings_.resize(active_.size());
   // All are taken before one crosses: what crosses may be put down where another one waits.

@@ -74,6 +74,7 @@ class ListPropagation {
     Index twin = no_index;
     Index tail = no_index;
     Index bucket = not_waiting;
+    Index memory = 0;  ///< number of its memory, counted from 1; or less the number of lists that crossed
   };
   /// And of a vertex.
   struct alignas(64) VertexState {
@@ -112,7 +113,7 @@ class ListPropagation {
     WindowBlocks blocks;
     bool tagged;
     EdgeEnvelope envelope;
-    std::vector<double> arrays[3];
+    std::vector<double> arrays[4];
     std::vector<double> sides[2];
     std::vector<std::unique_ptr<double[]>> kept;
     double* fresh = nullptr;
@@ -140,6 +141,8 @@ class ListPropagation {
   /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
   /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
   WindowArrays merged(const WindowArrays& windows, std::size_t& n, Index edge, Workshop& workshop) const;
+  /// What a list still adds to all that crossed the same half-edge before.
+  WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
   void commit(const Crossing& crossing);
 
   void run_vertices();
@@ -160,6 +163,7 @@ class ListPropagation {
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
   std::vector<std::vector<Index>> halfedges_;           ///< by bucket
   std::vector<std::vector<Index>> vertices_;
+  std::vector<EdgeEnvelope> memories_;  ///< of half-edges that are crossed again and again
   std::vector<Index> active_;
   std::vector<Crossing> crossings_;
   tbb::enumerable_thread_specific<Workshop> workshops_;

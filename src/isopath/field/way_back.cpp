@@ -22,7 +22,11 @@ bool improve(const Window& w, const Vec2& p, double slack, Crossing& best) {
   const bool is_point = w.kind == Window::Kind::point;
   const Vec2 towards = is_point ? Vec2(w.source - p) : Vec2(-w.source);
   double x = p.x();
-  if (towards.y() != 0) x -= towards.x() * (p.y() / towards.y());
+  if (towards.y() != 0) {
+    x -= towards.x() * (p.y() / towards.y());
+  } else if (p.y() != 0) {
+    return false;  // rays along the edge pass beside p
+  }
   if (x < w.begin - slack || x > w.end + slack) return false;
   if (is_point) {  // the straight line is the least that it can be
     const double left = best.distance - w.offset;
@@ -81,7 +85,7 @@ void consider_corners(const ExactFieldData& data, Index face, const Vec3& baryce
   const auto& geometry = data.geometry;
   const Vec2 corners[] = {Vec2(0, 0), Vec2(geometry.length(3 * face), 0), geometry.apex(3 * face)};
   for (int i = 0; i < 3; ++i) {
-    if (barycentric[i] == 1) continue;
+    if (barycentric[(i + 1) % 3] == 0 && barycentric[(i + 2) % 3] == 0) continue;
     const Index v = data.mesh.triangle(face)[i];
     const Vec2 towards = corners[i] - p;
     const double distance = data.distance[v] + towards.norm();
