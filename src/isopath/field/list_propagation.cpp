@@ -335,7 +335,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     n = drop_empty(windows, n);
   }
   if (site.memory > 0) windows = news(windows, n, h, workshop);
-  if (options_.limits.accuracy > 0) windows = merged(windows, n, mesh_.edge_of(h), workshop);
+  if (options_.limits.accuracy > 0) windows = merged(windows, n, site.length, workshop);
   if (options_.retain && n > 0) {
     KeptList* list = workshop.keep(windows, n);
     list->next = std::exchange(kept_[h], list);
@@ -391,10 +391,11 @@ WindowArrays ListPropagation::news(const WindowArrays& windows, std::size_t& n, 
   return to;
 }
 
-WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n, Index edge,
+WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n, double length,
                                      Workshop& workshop) const {
+  if (n < 2) return windows;
   EdgeEnvelope& envelope = workshop.envelope;
-  envelope.reset(geometry_.length(mesh_.halfedge_of(edge)), snap_width(edge));
+  envelope.reset(length, snap_width(length));
   for (std::size_t i = 0; i < n; ++i) envelope.insert(windows.window(i));
   envelope.merge(options_.limits);
   const std::vector<Window>& left = envelope.windows();
@@ -445,7 +446,7 @@ void ListPropagation::run_lists() {
     sites_[h].bucket = not_waiting;
     active_.push_back(h);
     if (sites_[h].memory > 0 || --sites_[h].memory > -lists_without_memory) continue;
-    memories_.emplace_back().reset(sites_[h].length, snap_width(mesh_.edge_of(h)));
+    memories_.emplace_back().reset(sites_[h].length, snap_width(sites_[h].length));
     sites_[h].memory = static_cast<Index>(memories_.size());
   }
   crossings_.resize(active_.size());

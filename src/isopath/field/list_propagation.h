@@ -10,6 +10,7 @@
 #include "isopath/core/progress.h"
 #include "isopath/field/edge_envelope.h"
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/large_pages.h"
 #include "isopath/field/list_step.h"
 #include "isopath/field/source_fronts.h"
 #include "isopath/field/window_list.h"
@@ -140,7 +141,7 @@ class ListPropagation {
   void cross(Crossing& crossing, Workshop& workshop);
   /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
   /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
-  WindowArrays merged(const WindowArrays& windows, std::size_t& n, Index edge, Workshop& workshop) const;
+  WindowArrays merged(const WindowArrays& windows, std::size_t& n, double length, Workshop& workshop) const;
   /// What a list still adds to all that crossed the same half-edge before.
   WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
   void commit(const Crossing& crossing);
@@ -149,13 +150,13 @@ class ListPropagation {
   void run_lists();
 
   void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
-  double snap_width(Index edge) const;
+  double snap_width(double edge_length) const;
 
   const TriangleMesh& mesh_;
   const IntrinsicGeometry& geometry_;
   Options options_;
-  std::vector<Site> sites_;
-  std::vector<VertexState> states_;
+  LargeVector<Site> sites_;
+  LargeVector<VertexState> states_;
   std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none
   std::vector<std::vector<BlockedArc>> source_arcs_;
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained

@@ -25,10 +25,9 @@ Window along_edge(double source, double length, double distance, double error, I
 
 }  // namespace
 
-double ListPropagation::snap_width(Index edge) const {
+double ListPropagation::snap_width(double edge_length) const {
   // Relative to the edge, and not below what coordinates of this model can resolve.
-  const double length = geometry_.length(mesh_.halfedge_of(edge));
-  return std::min(0.25 * length, std::max(1e-11 * length, 2e-14 * geometry_.size()));
+  return std::min(0.25 * edge_length, std::max(1e-11 * edge_length, 2e-14 * geometry_.size()));
 }
 
 void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const {
@@ -54,7 +53,7 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
   std::stable_sort(all.begin(), all.end(), [](const Window& a, const Window& b) {
     return a.kind != b.kind ? a.kind == Window::Kind::line : a.begin < b.begin;
   });
-  envelope.reset(length, snap_width(edge));
+  envelope.reset(length, snap_width(length));
   for (const Window& window : all) envelope.insert(window);
 
   const auto by_edge = [](const auto& source, Index e) { return source.first < e; };
