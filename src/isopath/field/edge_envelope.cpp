@@ -128,6 +128,17 @@ void EdgeEnvelope::write_back(std::size_t first, std::size_t past, const Window&
   }
 }
 
+bool EdgeEnvelope::is_continuous(double at_tail, double at_head) const {
+  if (windows_.empty() || windows_.front().begin != 0 || windows_.back().end != length_) return false;
+  const auto agree = [](double a, double b) { return std::abs(a - b) <= filler_margin * a; };
+  if (!agree(windows_.front().distance(0), at_tail) || !agree(windows_.back().distance(length_), at_head)) return false;
+  for (std::size_t i = 1; i < windows_.size(); ++i) {
+    const double x = windows_[i].begin;
+    if (windows_[i - 1].end != x || !agree(windows_[i - 1].distance(x), windows_[i].distance(x))) return false;
+  }
+  return true;
+}
+
 void EdgeEnvelope::merge(const MergeLimits& limits) {
   std::size_t kept = 0;
   for (const Window& next : windows_) {

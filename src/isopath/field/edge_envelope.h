@@ -18,6 +18,10 @@ class EdgeEnvelope {
   /// trims or removes what they beat.
   void insert(const Window& window);
 
+  /// True when the windows cover the edge and their distances run on without a jump from the one at its tail to
+  /// the one at its head. Then no path along the edge is shorter than they are, since none of them grows faster.
+  bool is_continuous(double at_tail, double at_head) const;
+
   /// Merges neighbours that enter the same face as long as the limits allow it.
   void merge(const MergeLimits& limits);
 

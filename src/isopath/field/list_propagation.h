@@ -149,6 +149,7 @@ class ListPropagation {
   void run_vertices();
   void run_lists();
 
+  void fetch_kept(Index edge) const;
   void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
   double snap_width(double edge_length) const;
 

@@ -11,6 +11,9 @@ namespace isopath {
 namespace {
 
 constexpr Index edges_at_a_time = 1024;
+constexpr std::size_t few = 16;
+/// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are needed.
+constexpr Index look_ahead = 8;
 
 Window along_edge(double source, double length, double distance, double error, Index root) {
   Window window;
@@ -23,11 +26,33 @@ Window along_edge(double source, double length, double distance, double error, I
   return window;
 }
 
+/// A stable sort that asks for no memory when there is little to sort.
+template <class Before>
+void sort_few(std::vector<Window>& windows, Before before) {
+  if (windows.size() > few) {
+    std::stable_sort(windows.begin(), windows.end(), before);
+    return;
+  }
+  for (std::size_t i = 1; i < windows.size(); ++i) {
+    for (std::size_t k = i; k > 0 && before(windows[k], windows[k - 1]); --k) std::swap(windows[k], windows[k - 1]);
+  }
+}
+
 }  // namespace
 
 double ListPropagation::snap_width(double edge_length) const {
   // Relative to the edge, and not below what coordinates of this model can resolve.
   return std::min(0.25 * edge_length, std::max(1e-11 * edge_length, 2e-14 * geometry_.size()));
+}
+
+void ListPropagation::fetch_kept(Index edge) const {
+  const Index h = mesh_.halfedge_of(edge);
+  for (const Index side : {h, mesh_.twin(h)}) {
+    if (side == no_index || kept_[side] == nullptr) continue;
+    const char* list = reinterpret_cast<const char*>(kept_[side]);
+    __builtin_prefetch(list);
+    __builtin_prefetch(list + 64);
+  }
 }
 
 void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const {
@@ -50,7 +75,7 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
   collect(canonical, twin == no_index, twin == no_index ? no_index : canonical);
   if (twin != no_index) collect(twin, true, twin);
   // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
-  std::stable_sort(all.begin(), all.end(), [](const Window& a, const Window& b) {
+  sort_few(all, [](const Window& a, const Window& b) {
     return a.kind != b.kind ? a.kind == Window::Kind::line : a.begin < b.begin;
   });
   envelope.reset(length, snap_width(length));
@@ -66,6 +91,10 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
     envelope.insert(
         along_edge(x, length, states_[vertex].distance, states_[vertex].arrival.error, states_[vertex].root));
   };
+  if (envelope.is_continuous(states_[mesh_.from(canonical)].distance, states_[mesh_.to(canonical)].distance)) {
+    envelope.merge(options_.limits);
+    return;  // ways along the edge are no shorter
+  }
   follow_from(mesh_.from(canonical), 0);
   follow_from(mesh_.to(canonical), length);
   envelope.merge(options_.limits);
@@ -83,6 +112,7 @@ ListPropagation::RetainedWindows ListPropagation::take_windows(Progress& progres
       progress.checkpoint();
       const Index past = std::min(mesh_.n_edges(), (part + 1) * edges_at_a_time);
       for (Index edge = part * edges_at_a_time; edge < past; ++edge) {
+        fetch_kept(std::min(edge + look_ahead, past - 1));
         add_kept(envelope, edge, all);
         parts[part].insert(parts[part].end(), envelope.windows().begin(), envelope.windows().end());
         retained.first[edge + 1] = envelope.windows().size();
