@@ -441,8 +441,9 @@ class Interrupt(Program):
         out = self.path("out")
         os.mkdir(out)
         for sent in (signal.SIGINT, signal.SIGTERM):
-            process = subprocess.Popen([PROGRAM, "field", large, "-o", os.path.join(out, "d.csv")],
-                                       stderr=subprocess.PIPE, text=True)
+            # the path takes the whole field, which is not done before the signal is there
+            process = subprocess.Popen([PROGRAM, "field", large, "-o", os.path.join(out, "d.csv"), "--path-to", "vertex:9"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             while "distance field" not in process.stderr.readline():
                 self.assertIsNone(process.poll(), "ended before it could be interrupted")
             start = time.monotonic()
