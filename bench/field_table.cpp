@@ -114,11 +114,16 @@ TriangleMesh bumpy_ball(int level) {
 TriangleMesh wavy(int cells) { return test::wavy_sheet(cells, 1, 0.1, 6, 5, 1); }
 
 void fill(Table& table) {
-  const auto from_vertex = [&](const std::string& name, const TriangleMesh& mesh) {
-    SourceSet source;
-    source.add_vertex(mesh, 0);
-    for (const std::size_t threads : {1, 2})
-      table.add(name, mesh, threads, [&] { return distances_only(mesh, source); });
+  const auto from_vertex = [&](const std::string& name, std::initializer_list<int> sizes, const auto& make) {
+    if (!table.wants(name)) return;
+    for (const std::size_t threads : {1, 2}) {
+      for (const int size : sizes) {
+        const TriangleMesh mesh = make(size);
+        SourceSet source;
+        source.add_vertex(mesh, 0);
+        table.add(name, mesh, threads, [&] { return distances_only(mesh, source); });
+      }
+    }
   };
   from_vertex("wavy-point", {158, 316, 500, 707}, wavy);
   from_vertex("blade-point", {1000}, [](int chord) { return test::lofted_blade(50, chord); });
