@@ -19,6 +19,7 @@ part=(data/mech_part_holes.off --unit m --process mill --tool ball:50)
 plan spiral "${part[@]}" --source boundary --pattern spiral --spacing 40
 plan contour "${part[@]}" --source boundary --pattern contour --spacing 80
 plan meander "${part[@]}" --source plane:0,0,1,0 --pattern meander --spacing 40
+plan two_way "${part[@]}" --source boundary --pattern two-way --spacing 60
 plan planar "${part[@]}" --pattern planar --direction 1,0,0 --spacing 40
 plan blade data/turbine_blade.off --unit cm --source boundary:0 --pattern spiral --spacing 40 --process spray --stand-off 150
 
@@ -27,4 +28,5 @@ picture distance_and_isolines contour --hide tool,path,arrows --show isolines
 picture gap_of_distance_field spiral --color gap --hide tool,path,arrows
 picture gap_of_parallel_planes planar --color gap --hide tool,path,arrows
 picture meander meander --hide tool
+picture two_way two_way --hide tool,arrows
 picture spray_path blade

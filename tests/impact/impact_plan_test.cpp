@@ -278,6 +278,7 @@ TEST(impact_plan, has_the_documented_defaults) {
   EXPECT_EQ(name_of(Pattern::spiral), "spiral");
   EXPECT_EQ(name_of(Pattern::meander), "meander");
   EXPECT_EQ(name_of(Pattern::planar), "planar");
+  EXPECT_EQ(name_of(Pattern::two_way), "two-way");
 }
 
 }  // namespace

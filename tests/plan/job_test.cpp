@@ -85,7 +85,7 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
   job.sources = {{.kind = SourceSpec::Kind::vertex, .indices = {pick(9), pick(9)}},
                  {.kind = SourceSpec::Kind::plane, .numbers = {number(), -number(), number(), number()}},
                  {.kind = SourceSpec::Kind::polyline, .file = folder / "x, y.csv"}};
-  if (pick(5) > 0) job.pattern = static_cast<Pattern>(pick(4));
+  if (pick(5) > 0) job.pattern = static_cast<Pattern>(pick(5));
   job.planar_direction = Vec3(number(), -number(), 0);
   job.spacing = number();
   job.clearance = number();

@@ -11,6 +11,7 @@
 #include "isopath/impact/passes.h"
 #include "isopath/impact/spiral.h"
 #include "isopath/impact/stroke_order.h"
+#include "isopath/impact/two_way.h"
 
 namespace isopath {
 namespace {
@@ -78,18 +79,10 @@ class Planner {
     CurveAssembly assembly(
         linker_, normals_,
         {longest_link_in_spacings * options_.spacing, options_.clearance > 0 ? options_.clearance : options_.spacing});
-    std::vector<std::vector<Gate>> gates;
-    const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;
-    for (const Passes::Run& run : passes_.runs) gates.push_back(gates_of(mesh_, passes_, run, samples));
-    const double lift_cost = 20 * options_.spacing;
-    const std::vector<Visit> visits =
-        order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost, progress_);
-    for (std::size_t i = 0; i < visits.size(); ++i) {
-      progress_.checkpoint();
-      add_run(passes_.runs[visits[i].run], visits[i].gate, assembly);
-      if (i + 1 < visits.size())
-        approach(passes_.runs[visits[i].run], visits[i].gate, gates[visits[i + 1].run][visits[i + 1].gate], assembly);
-      progress_.at(static_cast<double>(i + 1) / static_cast<double>(visits.size()));
+    if (options_.pattern == Pattern::two_way) {
+      add_closed_curves(assembly);
+    } else {
+      add_runs(assembly);
     }
     ImpactPlan plan;
     if (assembly.blocked_lifts() > 0) {
@@ -104,6 +97,36 @@ class Planner {
   }
 
  private:
+  void add_runs(CurveAssembly& assembly) {
+    std::vector<std::vector<Gate>> gates;
+    const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;
+    for (const Passes::Run& run : passes_.runs) gates.push_back(gates_of(mesh_, passes_, run, samples));
+    const double lift_cost = 20 * options_.spacing;
+    const std::vector<Visit> visits =
+        order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost, progress_);
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+      progress_.checkpoint();
+      add_run(passes_.runs[visits[i].run], visits[i].gate, assembly);
+      if (i + 1 < visits.size())
+        approach(passes_.runs[visits[i].run], visits[i].gate, gates[visits[i + 1].run][visits[i + 1].gate], assembly);
+      progress_.at(static_cast<double>(i + 1) / static_cast<double>(visits.size()));
+    }
+  }
+
+  /// One closed curve for every connected part; the curves of several parts in the order of their isolines.
+  void add_closed_curves(CurveAssembly& assembly) {
+    for (SurfaceCurve& curve : two_way(linker_, passes_.contours, passes_.spacing, progress_)) {
+      if (!assembly.empty()) {
+        curve.points.pop_back();
+        curve.positions.pop_back();
+        curve = rotated(curve, nearest_index(curve, assembly.end()));
+        const SurfacePoint first = curve.points.front();
+        curve.add(mesh_, first);
+      }
+      assembly.add_stroke(curve);
+    }
+  }
+
   void add_run(const Passes::Run& run, std::size_t gate, CurveAssembly& assembly) {
     std::vector<const Contour*> contours;
     for (const Index c : run.contours) contours.push_back(&passes_.contours[c]);
@@ -168,6 +191,8 @@ std::string_view name_of(Pattern pattern) {
       return "spiral";
     case Pattern::meander:
       return "meander";
+    case Pattern::two_way:
+      return "two-way";
     case Pattern::planar:
       return "planar";
   }

@@ -16,6 +16,7 @@ enum class Pattern {
   contour,  ///< every isoline is a pass of its own
   spiral,   ///< nested closed isolines become one spiral
   meander,  ///< quasi-parallel open isolines are joined end to end
+  two_way,  ///< all isolines become one closed curve without a lift, on any connected surface
   planar,   ///< the cutting-plane baseline: the function is a height, the isolines are plane cuts
 };
 std::string_view name_of(Pattern pattern);

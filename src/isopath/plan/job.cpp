@@ -13,10 +13,11 @@
 namespace isopath {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 5> patterns = {{{"auto", std::nullopt},
+constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 6> patterns = {{{"auto", std::nullopt},
                                                                                           {"contour", Pattern::contour},
                                                                                           {"spiral", Pattern::spiral},
                                                                                           {"meander", Pattern::meander},
+                                                                                          {"two-way", Pattern::two_way},
                                                                                           {"planar", Pattern::planar}}};
 
 [[noreturn]] void refuse_name(const char* what, std::string_view name, const std::vector<std::string_view>& allowed) {

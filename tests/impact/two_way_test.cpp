@@ -1,0 +1,290 @@
+#include "isopath/impact/two_way.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "impact/curve_checks.h"
+#include "isopath/field/exact_field.h"
+#include "isopath/field/vertex_field.h"
+#include "isopath/impact/boundary_rings.h"
+#include "isopath/impact/impact_plan.h"
+#include "isopath/impact/passes.h"
+#include "isopath/impact/ring.h"
+#include "isopath/impact/ring_joints.h"
+
+namespace isopath {
+namespace {
+
+struct Hole {
+  Vec2 centre;
+  double radius = 0;
+};
+
+/// A mesh over the plane without the faces inside the holes; the rims are drawn onto the circles, so that they are
+/// smooth.
+TriangleMesh with_holes(const TriangleMesh& mesh, const std::vector<Hole>& holes) {
+  TriangleSoup soup = mesh.soup();
+  const auto place = [&](Index v) { return Vec2(soup.positions[v].head<2>()); };
+  std::vector<const Hole*> inside(soup.positions.size(), nullptr);
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    for (const Hole& hole : holes) {
+      if ((place(v) - hole.centre).norm() < hole.radius) inside[v] = &hole;
+    }
+  }
+  std::erase_if(soup.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](Index v) { return inside[v] != nullptr; });
+  });
+  for (const Triangle& t : soup.triangles) {
+    for (const Index v : t) {
+      if (!inside[v]) continue;
+      const Vec2 out = inside[v]->radius * (place(v) - inside[v]->centre).normalized();
+      soup.positions[v].head<2>() = inside[v]->centre + out;
+    }
+  }
+  return TriangleMesh(std::move(soup));
+}
+
+TriangleMesh plate_with_holes(std::size_t n) {
+  const std::vector<Hole> holes = {{{15.1, 20.2}, 6.8}, {{42.3, 26.4}, 5.7}, {{41.2, 9.4}, 4.1}};
+  return with_holes(test::planar_grid(60, 40, 60, 40), {holes.begin(), holes.begin() + n});
+}
+
+ImpactPlan plan_two_way(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing) {
+  return plan_impact(mesh, function, {.pattern = Pattern::two_way, .spacing = spacing});
+}
+
+bool is_closed(const ImpactCurve& curve) { return curve.points.front().position == curve.points.back().position; }
+
+/// One closed curve without a lift that leaves no gap.
+void expect_one_closed_curve(const TriangleMesh& mesh, const ImpactPlan& plan, double spacing, double most_length) {
+  test::expect_valid(mesh, plan.curve);
+  EXPECT_EQ(test::pieces_of(plan.curve), 1);
+  EXPECT_EQ(test::lifts_of(plan.curve), 0);
+  EXPECT_TRUE(is_closed(plan.curve));
+  EXPECT_TRUE(plan.warnings.empty());
+  const GapReport gap = measure_gap(mesh, plan.curve, spacing);
+  EXPECT_LE(gap.max, 1.15 * spacing);
+  EXPECT_GE(gap.covered_fraction, 0.998);
+  EXPECT_LE(length_of(plan.curve, MoveKind::cover) * spacing / mesh.area(), most_length);
+}
+
+void expect_one_closed_curve_from_boundary(const TriangleMesh& mesh, double spacing, double most_length) {
+  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
+  expect_one_closed_curve(mesh, plan_two_way(mesh, field, spacing), spacing, most_length);
+}
+
+ExactField from_vertex(const TriangleMesh& mesh, Index vertex) {
+  SourceSet source;
+  source.add_vertex(mesh, vertex);
+  return ExactField::compute(mesh, source);
+}
+
+TEST(two_way, is_one_closed_curve_around_any_number_of_holes) {
+  for (std::size_t n = 0; n < 4; ++n) {
+    const TriangleMesh mesh = plate_with_holes(n);
+    ASSERT_EQ(mesh.boundary_loops().size(), n + 1);
+    SCOPED_TRACE(n);
+    expect_one_closed_curve_from_boundary(mesh, 2, 1.3);
+  }
+}
+
+TEST(two_way, is_one_closed_curve_over_a_notch_and_over_a_bump) {
+  expect_one_closed_curve_from_boundary(test::notched_ellipse(20, 96, 60, 40), 5, 1.2);
+  // from one side the fronts go round the bump and meet behind it
+  const TriangleMesh bump = test::height_grid(40, 40, 40, 40, [](double x, double y) {
+    return 12 * std::exp(-((x - 20) * (x - 20) + (y - 20) * (y - 20)) / 30);
+  });
+  expect_one_closed_curve_from_boundary(bump, 2, 1.2);
+  SourceSet side;
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i <= 40; ++i) points.push_back(point_at_vertex(bump, i));
+  side.add_polyline(bump, points, false);
+  expect_one_closed_curve(bump, plan_two_way(bump, ExactField::compute(bump, side), 2), 2, 1.2);
+}
+
+TEST(two_way, is_one_closed_curve_on_closed_surfaces) {
+  const TriangleMesh ball = test::icosphere(3, 20);
+  expect_one_closed_curve(ball, plan_two_way(ball, from_vertex(ball, 5), 3), 3, 1.2);
+  const TriangleMesh ring = test::torus(36, 18, 20, 7);
+  expect_one_closed_curve(ring, plan_two_way(ring, from_vertex(ring, 0), 3), 3, 1.2);
+  const TriangleMesh cube = test::cube(5, 20);
+  expect_one_closed_curve(cube, plan_two_way(cube, from_vertex(cube, 3), 2), 2, 1.2);
+}
+
+TEST(two_way, is_one_closed_curve_on_a_pipe_from_any_source) {
+  const TriangleMesh pipe = test::open_cylinder(48, 10, 10, 30);
+  expect_one_closed_curve_from_boundary(pipe, 2, 1.2);
+  expect_one_closed_curve(pipe, plan_two_way(pipe, from_vertex(pipe, 7), 2), 2, 1.3);
+  expect_one_closed_curve(pipe, plan_two_way(pipe, height_field(pipe, Vec3::UnitZ()), 2), 2, 1.2);
+}
+
+TEST(two_way, joins_the_ends_of_open_passes_along_the_boundary) {
+  for (const double depth : {20.0, 21.9}) {  // an even and an odd number of passes
+    const TriangleMesh plate = test::planar_grid(15, 10, 30, depth, {.jitter = 0.2});
+    expect_one_closed_curve(plate, plan_two_way(plate, height_field(plate, Vec3::UnitY()), 2), 2, 1.4);
+  }
+  const TriangleMesh plate = plate_with_holes(3);
+  expect_one_closed_curve(plate, plan_two_way(plate, height_field(plate, Vec3::UnitX()), 2), 2, 1.4);
+}
+
+TEST(two_way, is_a_closed_curve_on_every_component) {
+  TriangleSoup soup = test::planar_grid(8, 8, 16, 16).soup();
+  const auto n = static_cast<Index>(soup.positions.size());
+  const TriangleSoup other = soup;
+  // the second plate lies over the first one, nearer than neighbouring passes
+  for (const Vec3& p : other.positions) soup.positions.push_back(p + Vec3(1, 0, 1));
+  for (const auto& [a, b, c] : other.triangles) soup.triangles.push_back({a + n, b + n, c + n});
+  const TriangleMesh mesh(std::move(soup));
+  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
+  const Passes passes = choose_passes(mesh, field, 2, Progress::none());
+  const SurfaceLocator locator(mesh);
+  const std::vector<SurfaceCurve> curves = two_way({mesh, locator}, passes.contours, passes.spacing);
+  ASSERT_EQ(curves.size(), 2u);
+  std::set<Index> components;
+  for (const SurfaceCurve& curve : curves) {
+    test::expect_on_surface(mesh, curve);
+    EXPECT_EQ(curve.positions.front(), curve.positions.back());
+    components.insert(mesh.component_of(curve.points.front().face));
+  }
+  EXPECT_EQ(components.size(), 2u);
+  const ImpactPlan plan = plan_two_way(mesh, field, 2);
+  test::expect_valid(mesh, plan.curve);
+  EXPECT_EQ(test::lifts_of(plan.curve), 1);
+}
+
+TEST(two_way, walks_every_pass_but_for_its_cuts) {
+  const TriangleMesh disc = test::flat_disc(72, 12, 24);
+  const ExactField field = from_vertex(disc, 0);
+  const Passes passes = choose_passes(disc, field, 2, Progress::none());
+  const SurfaceLocator locator(disc);
+  const SurfaceLinker linker(disc, locator);
+  const std::vector<SurfaceCurve> curves = two_way(linker, passes.contours, passes.spacing);
+  ASSERT_EQ(curves.size(), 1u);
+  double length = 0;
+  for (const Contour& contour : passes.contours) length += length_of(disc, contour);
+  // a tree of n passes has n - 1 edges, each with two rungs of one spacing and two cuts of less than half of one
+  const double edges = static_cast<double>(passes.contours.size()) - 1;
+  EXPECT_LE(length_of(curves[0]), length + 2 * edges * passes.spacing * 1.1);
+  EXPECT_GE(length_of(curves[0]), length + 2 * edges * passes.spacing * 0.5);
+  // off the circles the curve is on rungs only
+  double off = 0;
+  for (std::size_t i = 1; i < curves[0].size(); ++i) {
+    const double mean = 0.5 * (field.value(curves[0].points[i]) + field.value(curves[0].points[i - 1]));
+    const double level = (std::round(mean / passes.spacing - 0.5) + 0.5) * passes.spacing;
+    if (std::abs(mean - level) > 0.05 * passes.spacing)
+      off += (curves[0].positions[i] - curves[0].positions[i - 1]).norm();
+  }
+  EXPECT_LE(off, 2 * edges * passes.spacing * 1.1);
+  EXPECT_GE(off, 2 * edges * passes.spacing * 0.5);
+}
+
+TEST(ring_joints, make_a_tree_whose_cuts_do_not_overlap) {
+  const TriangleMesh mesh = plate_with_holes(3);
+  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
+  const Passes passes = choose_passes(mesh, field, 1.5, Progress::none());
+  const std::vector<Ring> rings = rings_of(mesh, passes.contours);
+  const SurfaceLocator locator(mesh);
+  const SurfaceLinker linker(mesh, locator);
+  Progress progress;
+  const std::vector<RingJoint> joints = choose_joints(linker, rings, passes.spacing, progress);
+  ASSERT_EQ(joints.size() + 1, rings.size());
+  std::vector<std::size_t> root(rings.size());
+  for (std::size_t k = 0; k < root.size(); ++k) root[k] = k;
+  std::vector<std::vector<std::pair<double, double>>> cuts(rings.size());
+  for (const RingJoint& joint : joints) {
+    const std::size_t a = root[joint.cuts[0].ring];
+    const std::size_t b = root[joint.cuts[1].ring];
+    ASSERT_NE(a, b) << "a joint closes a loop";
+    std::replace(root.begin(), root.end(), a, b);
+    for (const auto& cut : joint.cuts) {
+      const Ring& ring = rings[cut.ring];
+      const double length = ring.wrapped(cut.high - cut.low);
+      EXPECT_GT(length, 0);
+      EXPECT_LT(length, 0.5 * passes.spacing);
+      for (const auto& [low, other] : cuts[cut.ring]) {
+        EXPECT_GT(ring.wrapped(cut.low - low), other);
+        EXPECT_GT(ring.wrapped(low - cut.low), length);
+      }
+      cuts[cut.ring].emplace_back(cut.low, length);
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double from = i == 0 ? joint.cuts[0].low : joint.cuts[0].high;
+      const double to = (i == 0) != joint.crosswise ? joint.cuts[1].low : joint.cuts[1].high;
+      const SurfaceCurve& rung = joint.rungs[i];
+      test::expect_on_surface(mesh, rung);
+      EXPECT_NEAR((rung.positions.front() - rings[joint.cuts[0].ring].position(from)).norm(), 0, 1e-9);
+      EXPECT_NEAR((rung.positions.back() - rings[joint.cuts[1].ring].position(to)).norm(), 0, 1e-9);
+    }
+  }
+}
+
+TEST(boundary_rings, use_every_pass_once_and_close) {
+  const TriangleMesh mesh = plate_with_holes(3);
+  for (const double angle : {0.0, 0.3, 1.2}) {
+    const VertexField height = height_field(mesh, Vec3(std::cos(angle), std::sin(angle), 0));
+    const std::vector<double> levels = {2.1, 6.3, 10.5, 14.7, 18.9, 23.1, 27.3, 31.5, 35.7};
+    const std::vector<Contour> contours = isolines(mesh, height, levels);
+    const std::vector<Ring> rings = rings_of(mesh, contours);
+    double off_boundary = 0;
+    for (const Ring& ring : rings) {
+      SurfaceCurve round;
+      ring.append_forward(round, 0, 0);
+      test::expect_on_surface(mesh, round);
+      EXPECT_LE((round.positions.front() - round.positions.back()).norm(), 1e-12);
+      for (std::size_t i = 1; i < round.size(); ++i) {
+        const bool joins = test::on_boundary(mesh, round.points[i]) && test::on_boundary(mesh, round.points[i - 1]) &&
+                           std::abs(height.value(round.points[i]) - height.value(round.points[i - 1])) > 1e-9;
+        if (!joins) off_boundary += (round.positions[i] - round.positions[i - 1]).norm();
+      }
+    }
+    double length = 0;
+    for (const Contour& contour : contours) length += length_of(mesh, contour);
+    // a join along a level of the height counts with the passes
+    EXPECT_GE(off_boundary, length * (1 - 1e-9)) << angle;
+    EXPECT_LE(off_boundary, length + (angle == 0 ? 80.0 : 1e-6)) << angle;
+  }
+}
+
+TEST(boundary_rings, walk_to_and_back_where_an_end_is_inside) {
+  const TriangleMesh mesh = test::planar_grid(4, 4, 4, 4);
+  Contour contour;
+  for (const Index v : {6, 7, 8}) contour.points.push_back(point_at_vertex(mesh, v));
+  const std::vector<Ring> rings = rings_of(mesh, std::vector<Contour>{contour});
+  ASSERT_EQ(rings.size(), 1u);
+  EXPECT_NEAR(rings[0].length(), 4, 1e-12);
+}
+
+TEST(ring, is_walked_by_arc_length) {
+  const TriangleMesh mesh = test::planar_grid(6, 6, 6, 6);
+  std::vector<SurfacePoint> square;  // of side 2 from (1, 1)
+  for (const Index v : {8, 9, 10, 17, 24, 23, 22, 15}) square.push_back(point_at_vertex(mesh, v));
+  const Ring ring(mesh, square);
+  ASSERT_NEAR(ring.length(), 8, 1e-12);
+  EXPECT_NEAR(ring.wrapped(-1), 7, 1e-12);
+  EXPECT_NEAR((ring.position(2.5) - Vec3(3, 1.5, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((position_of(mesh, ring.point(-0.25)) - Vec3(1, 1.25, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR(ring.nearest_arc(Vec3(2.2, 0, 0), 0, 2), 1.2, 1e-12);
+  EXPECT_NEAR(ring.nearest_arc(Vec3(0, 1.5, 0), 0.5, 1.5), 7.5, 1e-12);
+  test::Rng rng(7);
+  for (int i = 0; i < 200; ++i) {
+    const double from = test::random_real(rng, -8, 16);
+    const double to = test::random_real(rng, -8, 16);
+    SurfaceCurve forward;
+    ring.append_forward(forward, from, to);
+    SurfaceCurve backward;
+    ring.append_backward(backward, from, to);
+    test::expect_on_surface(mesh, forward);
+    test::expect_on_surface(mesh, backward);
+    EXPECT_NEAR(length_of(forward), ring.wrapped(to - from), 1e-9) << "case " << i;
+    EXPECT_NEAR(length_of(backward), ring.wrapped(from - to), 1e-9) << "case " << i;
+    EXPECT_NEAR((forward.positions.back() - ring.position(to)).norm(), 0, 1e-12) << "case " << i;
+    EXPECT_NEAR((backward.positions.back() - ring.position(to)).norm(), 0, 1e-12) << "case " << i;
+  }
+}
+
+}  // namespace
+}  // namespace isopath
