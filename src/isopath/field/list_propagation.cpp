@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "isopath/field/vertex_fan.h"
@@ -22,6 +23,8 @@ constexpr double bucket_width = 0.5;
 /// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
 /// the one before: after so many times a half-edge begins to remember what crossed.
 constexpr Index lists_without_memory = 64;
+/// So many lists are merged one after the other; more, as sources on a large face send them, are sorted.
+constexpr std::size_t few_lists = 8;
 constexpr std::size_t kept_chunk = 1 << 16;
 
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
@@ -282,32 +285,57 @@ void merge(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::s
 
 }  // namespace
 
+namespace {
+
+/// Copies a list of n windows in the order of their begin.
+void sort_windows(const WindowArrays& windows, std::size_t n, const WindowArrays& to) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return windows.begin[a] < windows.begin[b]; });
+  for (std::size_t i = 0; i < n; ++i) (windows + order[i]).copy(1, to + i);
+}
+
+}  // namespace
+
 WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std::size_t& n,
                                      WindowBlock*& owner) const {
-  WindowArrays gathered;
-  owner = nullptr;
+  std::vector<WindowBlock*>& blocks = workshop.waiting;
+  blocks.clear();
   n = 0;
-  int which = 0;
   for (WindowBlock* first : crossing.lists) {
-    for (WindowBlock* block = first; block != nullptr;) {
-      WindowBlock* next = block->next;
-      const auto size = static_cast<std::size_t>(block->size);
-      if (n == 0) {
-        gathered = workshop.blocks.arrays(block);
-        owner = block;
-      } else {
-        const WindowArrays to = workshop.scratch(which, n + size);
-        merge(gathered, n, workshop.blocks.arrays(block), size, to);
-        if (owner != nullptr) workshop.blocks.give_back(std::exchange(owner, nullptr));
-        workshop.blocks.give_back(block);
-        gathered = to;
-        which = 1 - which;
-      }
-      n += size;
-      block = next;
+    for (WindowBlock* block = first; block != nullptr; block = block->next) {
+      blocks.push_back(block);
+      n += static_cast<std::size_t>(block->size);
     }
   }
-  return gathered;
+  owner = nullptr;
+  if (blocks.size() == 1) {
+    owner = blocks.front();
+    return workshop.blocks.arrays(owner);
+  }
+  WindowArrays gathered = workshop.scratch(0, n);
+  std::size_t so_far = 0;
+  int which = 0;
+  const bool few = blocks.size() <= few_lists;
+  for (WindowBlock* block : blocks) {
+    const auto size = static_cast<std::size_t>(block->size);
+    const WindowArrays windows = workshop.blocks.arrays(block);
+    if (few && so_far > 0) {
+      which = 1 - which;
+      const WindowArrays to = workshop.scratch(which, n);
+      merge(gathered, so_far, windows, size, to);
+      gathered = to;
+    } else {
+      windows.copy(size, gathered + so_far);
+    }
+    so_far += size;
+    workshop.blocks.give_back(block);
+  }
+  if (few) return gathered;
+  const WindowArrays sorted = workshop.scratch(1, n);
+  sort_windows(gathered, n, sorted);
+  return sorted;
 }
 
 void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {

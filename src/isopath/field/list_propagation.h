@@ -114,6 +114,7 @@ class ListPropagation {
     WindowBlocks blocks;
     bool tagged;
     EdgeEnvelope envelope;
+    std::vector<WindowBlock*> waiting;
     std::vector<double> arrays[4];
     std::vector<double> sides[2];
     std::vector<std::unique_ptr<double[]>> kept;
