@@ -162,7 +162,11 @@ std::size_t ExactField::windows_kept() const { return data_->windows.size(); }
 std::size_t ExactField::windows_propagated() const { return data_->propagated; }
 double ExactField::max_slope() const { return data_->geometry.max_stretch(); }
 double ExactField::value_at_vertex(Index vertex) const { return data_->distance[vertex]; }
-double ExactField::value(const SurfacePoint& point) const { return nearest(point).distance; }
+double ExactField::value(const SurfacePoint& point) const {
+  const Support support = support_of(data_->mesh, point);
+  if (support.kind == Support::Kind::vertex) return data_->distance[support.index];
+  return best_way_back(*data_, point.face, point.barycentric).distance;
+}
 
 double ExactField::max_vertex_distance() const {
   double largest = 0;

@@ -70,11 +70,9 @@ AxisJumps axis_jumps(const ImpactCurve& curve, double reach, const Progress& pro
       continue;
     }
     while (arc[i] - arc[first] > reach && first + 1 < i) ++first;
-    double most = 0;
-    for (std::size_t j = first; j < i; ++j) {
-      const Vec3& before = curve.points[j].normal;
-      most = std::max(most, std::atan2(before.cross(point.normal).norm(), before.dot(point.normal)));
-    }
+    double cosine = 1;
+    for (std::size_t j = first; j < i; ++j) cosine = std::min(cosine, curve.points[j].normal.dot(point.normal));
+    const double most = std::acos(std::max(cosine, -1.0));
     if (most <= jump) continue;
     if (arc[i] - last_jump > reach) ++jumps.count;
     last_jump = arc[i];
