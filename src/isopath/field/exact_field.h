@@ -63,6 +63,9 @@ class ExactField final : public SurfaceFunction {
   /// Empty where the point is unreached.
   std::vector<SurfacePoint> shortest_path(const SurfacePoint& point) const;
 
+  /// The windows of every edge and what else the field keeps (exact_field_data.h), for algorithms that follow fronts.
+  const ExactFieldData& data() const { return *data_; }
+
   std::size_t windows_kept() const;
   std::size_t windows_propagated() const;
   /// Throws Error(internal) where the windows contradict each other: see verify_windows (field_invariants.h). For

@@ -80,6 +80,7 @@ struct WayBack {
   Index at = no_index;          ///< source element, vertex, or half-edge of the face
   double x = 0;                 ///< on the half-edge, or fraction along the source element
   Vec2 towards = Vec2::Zero();  ///< to the unfolded source, in the frame of half-edge 3·face
+  bool straight = false;        ///< a front of parallel rays: of `towards` only the direction means something
 };
 
 /// Edges of a face that a way back must not go through, by the corner index of their tail.

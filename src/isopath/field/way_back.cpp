@@ -14,6 +14,7 @@ struct Crossing {
   double x = 0;
   double distance = infinity;
   Vec2 towards = Vec2::Zero();
+  bool straight = false;
 };
 
 /// Improves `best` by the straight way from p to the window's source, or by way of the nearest point of the window
@@ -35,7 +36,7 @@ bool improve(const Window& w, const Vec2& p, double slack, Crossing& best) {
   if (x >= w.begin && x <= w.end) {
     const double distance = is_point ? w.offset + towards.norm() : w.offset + w.source.dot(p);
     if (!(distance < best.distance)) return false;
-    best = {x, distance, towards};
+    best = {x, distance, towards, !is_point};
     return true;
   }
   x = std::clamp(x, w.begin, w.end);
@@ -57,7 +58,8 @@ void consider_source(const ExactFieldData::PlacedSource& source, const Vec2& p, 
   const double bound = best.distance * best.distance;
   if (at_end ? squared >= bound : squared > bound) return;
   const double distance = std::sqrt(squared);
-  if (distance < best.distance) best = {distance, source.id, WayBack::Stop::source, source.id, t, towards};
+  if (distance < best.distance)
+    best = {distance, source.id, WayBack::Stop::source, source.id, t, towards, t > 0 && t < 1};
 }
 
 void consider_sources(const ExactFieldData& data, Index face, const Vec2& p, WayBack& best) {
@@ -113,7 +115,7 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
     root = w.root;
   });
   if (!found) return;
-  best = {crossing.distance, root, WayBack::Stop::edge, h, crossing.x, crossing.towards};
+  best = {crossing.distance, root, WayBack::Stop::edge, h, crossing.x, crossing.towards, crossing.straight};
   if (!canonical) {
     best.x = length - best.x;
     best.towards = -best.towards;
