@@ -130,8 +130,9 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   add_sources(command, given.sources);
   command
       .add_option("--pattern", given.pattern,
-                  "auto: spiral where the isolines are closed, else meander; contour: a pass for every isoline;\n"
-                  "spiral; meander; two-way: one closed curve without a lift; planar: cuts with parallel planes")
+                  "auto: spiral where the isolines are closed, else meander; two-way where that is better;\n"
+                  "contour: a pass for every isoline; spiral; meander; two-way: one closed curve without a lift;\n"
+                  "planar: cuts with parallel planes")
       ->default_str("auto");
   command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")
       ->delimiter(',')

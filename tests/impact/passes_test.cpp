@@ -204,5 +204,32 @@ TEST(passes, of_a_function_without_range_are_none) {
   }
 }
 
+TEST(passes, of_exact_layout_are_the_asked_spacing_apart) {
+  const TriangleMesh disc = test::open_cone(72, 12, 24, 24);
+  SourceSet source;
+  source.add_vertex(disc, 0);
+  const ExactField field = ExactField::compute(disc, source);
+  for (const double spacing : {1.9, 2.2, 5.3, 11.0}) {
+    const Passes passes = choose_passes(disc, field, spacing, Progress::none(), PassLayout::exact);
+    EXPECT_EQ(passes.spacing, spacing);
+    double last = 0;
+    for (const Contour& contour : passes.contours) {
+      const double place = contour.level / spacing - 0.5;
+      // whole numbers, and at the top a half
+      EXPECT_NEAR(2 * place, std::round(2 * place), 1e-9) << spacing;
+      if (contour.level < 24 - spacing) {
+        EXPECT_NEAR(place, std::round(place), 1e-9) << spacing;
+      }
+      EXPECT_LE(contour.level - last, (1 + 1e-9) * spacing) << spacing;
+      last = contour.level;
+    }
+    EXPECT_LE(24 - last, (0.5 + 1e-9) * spacing) << spacing;
+  }
+  // a range below the spacing has nothing to be exact about
+  const Passes one = choose_passes(disc, field, 30, Progress::none(), PassLayout::exact);
+  ASSERT_EQ(one.contours.size(), 1u);
+  EXPECT_NEAR(one.contours[0].level, 12, 1e-6);
+}
+
 }  // namespace
 }  // namespace isopath

@@ -67,7 +67,7 @@ class Planner {
 
   ImpactPlan run() {
     progress_.stage("isolines");
-    passes_ = choose_passes(mesh_, function_, pass_allowance * options_.spacing, progress_);
+    choose();
     if (passes_.contours.empty()) {
       throw Error(
           ErrorCode::no_plan, "no isoline lies on the surface",
@@ -97,6 +97,20 @@ class Planner {
   }
 
  private:
+  /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.
+  void choose() {
+    const double spacing = pass_allowance * options_.spacing;
+    passes_ = choose_passes(mesh_, function_, spacing, progress_);
+    if (options_.pattern != Pattern::two_way || passes_.spacing > (1 - 1e-3) * spacing) return;
+    const auto length = [&](const Passes& passes) {
+      double sum = 0;
+      for (const Contour& contour : passes.contours) sum += length_of(mesh_, contour);
+      return sum;
+    };
+    Passes exact = choose_passes(mesh_, function_, spacing, progress_, PassLayout::exact);
+    if (length(exact) < length(passes_)) passes_ = std::move(exact);
+  }
+
   void add_runs(CurveAssembly& assembly) {
     std::vector<std::vector<Gate>> gates;
     const std::size_t samples = passes_.runs.size() > 100 ? 8 : 48;

@@ -107,7 +107,8 @@ std::vector<char> mark_passes(const ContourSet& set, std::span<const double> lev
   return keep;
 }
 
-Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress) {
+Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress,
+                     PassLayout layout) {
   Passes passes;
   const ValueRange range = value_range(mesh, function, 0.01 * spacing, progress);
   if (!(range.high > range.low)) return passes;
@@ -117,9 +118,13 @@ Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, 
                 {.element = "spacing",
                  .value = fmt::format("{} mm makes {:.3g} passes, limit {:.0f}", spacing, count, most_passes)});
   }
-  passes.spacing = (range.high - range.low) / count;
+  const bool even = layout == PassLayout::even || range.high - range.low <= spacing;
+  passes.spacing = even ? (range.high - range.low) / count : spacing;
   std::vector<double> levels;
-  for (int k = 1; k < 2 * static_cast<int>(count); ++k) levels.push_back(range.low + 0.5 * k * passes.spacing);
+  for (int k = 1; k < 2 * static_cast<int>(count); ++k) {
+    const double level = range.low + 0.5 * k * passes.spacing;
+    if (level < range.high) levels.push_back(level);
+  }
 
   const IsolineOptions options{.chord_tolerance = 1e-3 * spacing};
   ContourSet set = contour_set(mesh, function, levels, options, progress);

@@ -22,14 +22,21 @@ struct Passes {
     bool closed = false;
   };
   std::vector<Run> runs;
-  /// The spacing that was used: the one asked for, or a little less so that passes divide the range evenly.
+  /// The spacing that was used: the one asked for, or with even layout a little less.
   double spacing = 0;
 };
 
-/// Levels half a spacing in from the least and the greatest value and evenly between, and in addition a last pass
+/// How levels fill the range of the function.
+enum class PassLayout {
+  even,   ///< half a spacing in from both ends and evenly between, the spacing a little smaller where it has to be
+  exact,  ///< half a spacing in from the least value and the spacing asked for apart; what is left is at the top
+};
+
+/// Levels half a spacing in from the least value, as far apart as the layout tells, and in addition a last pass
 /// wherever the function rises by more than half a spacing above the last level inside it (paper ch. 8: bumps and
 /// branches). Empty when the function is finite nowhere. Throws Error(bad_usage) when that would be more than a
 /// million levels, Error(cancelled) on request.
-Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress);
+Passes choose_passes(const TriangleMesh& mesh, const SurfaceFunction& function, double spacing, Progress& progress,
+                     PassLayout layout = PassLayout::even);
 
 }  // namespace isopath

@@ -14,9 +14,12 @@
 namespace isopath {
 namespace {
 
-/// Length of a cut over the distance d of the two rings. On the edge of the part, d/2 from the ring, the nearest rung's
-/// foot is (d/2) √(1 + cut²) away; this keeps the gap there at 1.07 d, and at 1.04 d on the side where another ring is.
-constexpr double cut_over_distance = 0.38;
+/// Length of a cut in spacings w. On the edge of the part, w/2 from the ring, the nearest rung's foot is
+/// (w/2) √(1 + cut²) away; this keeps the gap there at 1.07 w, and at 1.04 w on the side where another ring is.
+constexpr double cut_over_spacing = 0.38;
+/// Rings at the top of the function are half a spacing from the next one; where they are nearer still, or where a
+/// metric makes them so, cuts are shorter too.
+constexpr double most_cut_over_distance = 2 * cut_over_spacing;
 constexpr double most_cut_of_ring = 0.2;
 
 /// What a joint has to keep; one set of limits after the other is tried on the rings that are left.
@@ -144,8 +147,8 @@ class JointChooser {
     RingJoint joint;
     for (int side = 0; side < 2; ++side) {
       const Ring& ring = rings_[place.ring[side]];
-      const double half =
-          0.5 * std::min(cut_over_distance * std::min(distance, spacing_), most_cut_of_ring * ring.length());
+      const double half = 0.5 * std::min(std::min(cut_over_spacing * spacing_, most_cut_over_distance * distance),
+                                         most_cut_of_ring * ring.length());
       joint.cuts[side] = {place.ring[side], ring.wrapped(centre[side] - half), ring.wrapped(centre[side] + half)};
       if (!is_free(joint.cuts[side], 0.5 * (from + to), centre[side], half, limits)) return std::nullopt;
     }

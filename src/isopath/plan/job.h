@@ -24,7 +24,7 @@ struct Job {
   std::filesystem::path mesh;                        ///< required; relative to the working folder
   LengthUnit unit = LengthUnit::millimetre;          ///< unit of the mesh file's coordinates
   std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
-  std::optional<Pattern> pattern = {};               ///< none: spiral where the isolines are closed, meander where open
+  std::optional<Pattern> pattern = {};               ///< none: what suits the part, see plan/auto_pattern.h
   Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same

@@ -10,11 +10,11 @@
 #include <optional>
 #include <utility>
 
-#include "isopath/contour/isolines.h"
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/plan/auto_pattern.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
 #include "isopath/plan/part_checks.h"
@@ -140,22 +140,23 @@ void warn_of_unreached(const TriangleMesh& mesh, const std::vector<double>& dist
       fmt::format("{} of the part's {} components hold no source and are not covered", unreached, mesh.n_components()));
 }
 
-/// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell.
-Pattern pattern_of(const TriangleMesh& mesh, const Field& field, Progress& progress) {
-  double largest = 0;
-  for (const double value : field.at_vertices) {
-    if (value < infinity) largest = std::max(largest, value);
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// The impact curve, with the pattern the job names or one that suits the part.
+void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry* metric, Progress& progress) {
+  const TriangleMesh& mesh = result.part.mesh;
+  ImpactOptions options{.spacing = result.spacing, .clearance = result.job.clearance, .metric = metric};
+  if (result.job.pattern) {
+    options.pattern = result.pattern = *result.job.pattern;
+    result.impact = plan_impact(mesh, *field.function, options, progress);
+  } else {
+    ChosenPlan chosen = plan_by_part(mesh, *field.function, field.at_vertices, options, progress);
+    result.pattern = chosen.pattern;
+    result.impact = std::move(chosen.plan);
   }
-  std::vector<double> levels;
-  if (largest > 0) {
-    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) levels.push_back(share * largest);
-  }
-  double closed = 0;
-  double open = 0;
-  for (const Contour& contour : isolines(mesh, *field.function, levels, {}, progress)) {
-    (contour.closed ? closed : open) += length_of(mesh, contour);
-  }
-  return closed >= open ? Pattern::spiral : Pattern::meander;
+  append(result.warnings, result.impact.warnings);
 }
 
 double length_ratio_of(const PlanResult& result, const IntrinsicGeometry* metric) {
@@ -175,10 +176,6 @@ void warn_of_axis_jumps(const PlanResult& result, std::vector<std::string>& warn
                   "({:.4g}, {:.4g}, {:.4g}): a machine slows down or swings out there; a fixed axis, or a part with "
                   "rounded edges, avoids it",
                   reach, jumps.count, jumps.worst * 180 / std::numbers::pi, jumps.at.x(), jumps.at.y(), jumps.at.z()));
-}
-
-void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
-  all.insert(all.end(), more.begin(), more.end());
 }
 
 /// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
@@ -229,11 +226,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
   clock.ends("field");
 
-  result.pattern = job.pattern ? *job.pattern : pattern_of(mesh, field, progress);
-  result.impact = plan_impact(
-      mesh, *field.function,
-      {.pattern = result.pattern, .spacing = result.spacing, .clearance = job.clearance, .metric = metric}, progress);
-  append(result.warnings, result.impact.warnings);
+  plan_curve(result, field, metric, progress);
   result.distances = std::move(field.at_vertices);
   if (job.report) {
     result.display.refined = refine_for_display(mesh, result.spacing);

@@ -1,0 +1,75 @@
+#include "isopath/plan/auto_pattern.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "isopath/contour/isolines.h"
+
+namespace isopath {
+namespace {
+
+/// A spiral or meander within this of area / spacing leaves a two-way curve nothing to win.
+constexpr double good_length_ratio = 1.12;
+/// One lift is worth so much of the length.
+constexpr double similar_length = 1.05;
+/// The right angles of joints are worth so much of it.
+constexpr double worthwhile_length = 1.1;
+
+/// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell.
+Pattern pattern_of(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
+                   Progress& progress) {
+  double largest = 0;
+  for (const double value : values) {
+    if (value < infinity) largest = std::max(largest, value);
+  }
+  std::vector<double> levels;
+  if (largest > 0) {
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) levels.push_back(share * largest);
+  }
+  double closed = 0;
+  double open = 0;
+  for (const Contour& contour : isolines(mesh, function, levels, {}, progress)) {
+    (contour.closed ? closed : open) += length_of(mesh, contour);
+  }
+  return closed >= open ? Pattern::spiral : Pattern::meander;
+}
+
+Index lifts_of(const ImpactCurve& curve) { return curve.points.back().piece; }
+
+double length_on_surface(const ImpactCurve& curve) {
+  return length_of(curve, MoveKind::cover) + length_of(curve, MoveKind::link);
+}
+
+bool clearly_better(const ImpactCurve& curve, const ImpactCurve& than) {
+  const double length = length_on_surface(curve);
+  const double other_length = length_on_surface(than);
+  if (lifts_of(curve) < lifts_of(than)) return length <= similar_length * other_length;
+  return lifts_of(curve) == lifts_of(than) && worthwhile_length * length < other_length;
+}
+
+/// Area that the function reaches.
+double reached_area(const TriangleMesh& mesh, std::span<const double> values) {
+  double sum = 0;
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const Triangle& t = mesh.triangle(f);
+    if (std::all_of(t.begin(), t.end(), [&](Index v) { return values[v] < infinity; })) sum += mesh.face_area(f);
+  }
+  return sum;
+}
+
+}  // namespace
+
+ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
+                        const ImpactOptions& options, Progress& progress) {
+  ImpactOptions tried = options;
+  tried.pattern = pattern_of(mesh, function, values, progress);
+  ChosenPlan chosen{tried.pattern, plan_impact(mesh, function, tried, progress)};
+  const double ratio = length_on_surface(chosen.plan.curve) * options.spacing / reached_area(mesh, values);
+  if (lifts_of(chosen.plan.curve) == 0 && ratio <= good_length_ratio) return chosen;
+  tried.pattern = Pattern::two_way;
+  ChosenPlan other{tried.pattern, plan_impact(mesh, function, tried, progress)};
+  return clearly_better(other.plan.curve, chosen.plan.curve) ? std::move(other) : std::move(chosen);
+}
+
+}  // namespace isopath
