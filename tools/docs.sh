@@ -14,7 +14,7 @@ plan() { # RUN arguments...
   build/isopath plan "$@" -o "$out/$run" --post csv --quiet >/dev/null
 }
 
-mkdir -p docs/img
+mkdir -p docs/img "$out"
 part=(data/mech_part_holes.off --unit m --process mill --tool ball:50)
 plan spiral "${part[@]}" --source boundary --pattern spiral --spacing 40
 plan contour "${part[@]}" --source boundary --pattern contour --spacing 80
@@ -30,3 +30,10 @@ picture gap_of_parallel_planes planar --color gap --hide tool,path,arrows
 picture meander meander --hide tool
 picture two_way two_way --hide tool,arrows
 picture spray_path blade
+
+# the medial axis over isolines, seen from above
+plate=(data/patch_100mm_a.off --source boundary --quiet)
+build/isopath medial-axis "${plate[@]}" --prune 0.5 -o "$out/axis.csv"
+build/isopath contours "${plate[@]}" --spacing 8 -o "$out/lines.json"
+python3 tools/axis_picture.py "$out/axis.csv" "$out/lines.json" docs/img/medial_axis.svg
+echo docs/img/medial_axis.svg

@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   add_check(app, flags, action);
   add_field(app, flags, action);
   add_contours(app, flags, action);
+  add_medial_axis(app, flags, action);
   add_export(app, flags, action);
   try {
     app.parse(argc, argv);

@@ -2,6 +2,6 @@
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli_test.py $<TARGET_FILE:isopath_app>
-                            check,contours,export,field,plan $<IF:$<BOOL:${ISOPATH_SANITIZE}>,6,1>)
+                            check,contours,export,field,medial-axis,plan $<IF:$<BOOL:${ISOPATH_SANITIZE}>,6,1>)
   set_tests_properties(cli PROPERTIES TIMEOUT 600 LABELS cli RUN_SERIAL TRUE)
 endif()

@@ -207,6 +207,46 @@ class Contours(Program):
         self.assert_refused(run("contours", self.plane, "--spacing", 1e-9, "-o", out), USAGE, "--spacing", "or more")
 
 
+class MedialAxis(Program):
+    def test_of_a_rectangle_is_its_roof(self):
+        out = self.path("axis.csv")
+        result = run("medial-axis", self.plane, "--source", "boundary", "-o", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual((report["arcs"], report["nodes"], report["leaves"]), (5, 6, 4))
+        self.assertAlmostEqual(report["length"], 30 + 4 * 25 * math.sqrt(2))
+        self.assertAlmostEqual(report["max_clearance"], 25)
+        header, *lines = self.read(out).decode().split()
+        columns = header.split(",")
+        self.assertGreater(len(lines), 10)
+        for line in lines:
+            point = dict(zip(columns, map(float, line.split(","))))
+            x, y = point["x"], point["y"]
+            self.assertAlmostEqual(point["clearance"], min(x, y, 80 - x, 50 - y))
+            self.assertAlmostEqual(sorted([x, y, 80 - x, 50 - y])[0], sorted([x, y, 80 - x, 50 - y])[1])
+
+    def test_branches_are_pruned(self):
+        out = self.path("axis.vtp")
+        result = run("medial-axis", self.plane, "--source", "boundary", "--prune", 1.5, "-o", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["leaves"], 2)
+        self.assertIn(b"clearance", self.read(out))
+
+    def test_voronoi_diagram_lies_half_way(self):
+        out = self.path("cells.csv")
+        result = run("medial-axis", self.plane, "--source", "vertex:0,8", "--voronoi", "-o", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["arcs"], 1)
+        for line in self.read(out).decode().split()[1:]:
+            self.assertAlmostEqual(float(line.split(",")[3]), 40)
+
+    def test_options_are_checked(self):
+        out = self.path("axis.vtp")
+        self.assert_refused(run("medial-axis", self.plane, "--min-angle", 181, "-o", out), USAGE, "--min-angle", "180")
+        self.assert_refused(run("medial-axis", self.plane, "--prune", -1, "-o", out), USAGE, "--prune")
+        self.assert_refused(run("medial-axis", self.plane, "-o", "axis.txt"), USAGE, ".csv")
+
+
 class Check(Program):
     def test_describes_a_plane(self):
         result = run("check", self.plane, "--json")

@@ -159,7 +159,7 @@ void FaceBisectors::ties_along(const Vec2& p, const Front& a, const Vec2& q, con
   if (equal && !tied && is_nearest(a, x)) x = 0.5 * (p + q);
   const Front c = fronts_.nearest(x);
   if (tied || closed_in) {
-    if (rule_.separates(a, b, x) && rule_.may_meet(a, b, x, along)) {
+    if (equal && rule_.separates(a, b, x) && rule_.may_meet(a, b, x, along)) {
       if (depth < 3) ties_between_checked(p, a, x, depth, out);
       out.push_back({x, a, b});
       if (depth < 3) ties_between_checked(x, b, q, depth, out);

@@ -60,6 +60,14 @@ class BisectorTracer {
     data_.for_each_window(edge, [&](const Window& w) {
       if (w.end - w.begin > narrowest_window * rule_.size) windows.push_back(&w);
     });
+    // where rounding left a crack between real fronts, a path along the edge fills it with a longer distance
+    const double jump = 1e-9 * rule_.size;
+    for (std::size_t k = windows.size(); k-- > 0;) {
+      const Window& w = *windows[k];
+      const bool above_left = k > 0 && w.distance(w.begin) > windows[k - 1]->distance(w.begin) + jump;
+      const bool above_right = k + 1 < windows.size() && w.distance(w.end) > windows[k + 1]->distance(w.end) + jump;
+      if (w.filler && (above_left || above_right)) windows.erase(windows.begin() + static_cast<std::ptrdiff_t>(k));
+    }
   }
 
   void find_edge_ties(Progress& progress) {
@@ -96,6 +104,7 @@ class BisectorTracer {
       x = std::clamp(better, 0.0, length);
     }
     const Vec2 p = tail + x * along;
+    if (std::abs(a.distance(p) - b.distance(p)) > 1e-9 * rule_.size) return;
     if (rule_.separates(a, b, p) && rule_.may_meet(a, b, p, along)) ties_.push_back({x, &before, &after});
   }
 
@@ -129,6 +138,7 @@ class BisectorTracer {
       const Front after = fronts.of_window(3 * face + next, *windows[next].front());
       const Vec2 across =
           (corner - fronts.corner(i)).normalized() + (fronts.corner((next + 1) % 3) - corner).normalized();
+      if (std::abs(before.distance(corner) - after.distance(corner)) > 1e-9 * rule_.size) continue;
       if (!rule_.separates(before, after, corner) || !rule_.may_meet(before, after, corner, across)) continue;
       const Index id = static_cast<Index>(ties_.size()) + data_.mesh.triangle(face)[next];
       sides[i].push_back({corner, before, after, id});
