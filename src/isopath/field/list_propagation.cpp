@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "isopath/field/vertex_fan.h"
@@ -253,51 +252,6 @@ ListPropagation::KeptList* ListPropagation::Workshop::keep(const WindowArrays& w
   return list;
 }
 
-namespace {
-
-/// Merges two sorted lists.
-void merge(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b, const WindowArrays& to) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  std::size_t k = 0;
-  const auto copy = [&](const WindowArrays& from, std::size_t at) {
-    to.begin[k] = from.begin[at];
-    to.end[k] = from.end[at];
-    to.x[k] = from.x[at];
-    to.y[k] = from.y[at];
-    to.offset[k] = from.offset[at];
-    if (from.root != nullptr) {
-      to.root[k] = from.root[at];
-      to.error[k] = from.error[at];
-    }
-    ++k;
-  };
-  while (i < n_a && j < n_b) {
-    if (a.begin[i] <= b.begin[j]) {
-      copy(a, i++);
-    } else {
-      copy(b, j++);
-    }
-  }
-  (a + i).copy(n_a - i, to + k);
-  (b + j).copy(n_b - j, to + (k + n_a - i));
-}
-
-}  // namespace
-
-namespace {
-
-/// Copies a list of n windows in the order of their begin.
-void sort_windows(const WindowArrays& windows, std::size_t n, const WindowArrays& to) {
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return windows.begin[a] < windows.begin[b]; });
-  for (std::size_t i = 0; i < n; ++i) (windows + order[i]).copy(1, to + i);
-}
-
-}  // namespace
-
 WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std::size_t& n,
                                      WindowBlock*& owner) const {
   std::vector<WindowBlock*>& blocks = workshop.waiting;
@@ -324,7 +278,7 @@ WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std
     if (few && so_far > 0) {
       which = 1 - which;
       const WindowArrays to = workshop.scratch(which, n);
-      merge(gathered, so_far, windows, size, to);
+      merge_lists(gathered, so_far, windows, size, to);
       gathered = to;
     } else {
       windows.copy(size, gathered + so_far);
@@ -334,7 +288,7 @@ WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std
   }
   if (few) return gathered;
   const WindowArrays sorted = workshop.scratch(1, n);
-  sort_windows(gathered, n, sorted);
+  sort_list(gathered, n, sorted);
   return sorted;
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <new>
+#include <numeric>
 
 namespace isopath {
 namespace {
@@ -69,6 +70,42 @@ void WindowArrays::set(std::size_t i, const Window& w) const {
   if (root == nullptr) return;
   root[i] = w.root;
   error[i] = w.error;
+}
+
+void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b,
+                 const WindowArrays& to) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  std::size_t k = 0;
+  const auto copy = [&](const WindowArrays& from, std::size_t at) {
+    to.begin[k] = from.begin[at];
+    to.end[k] = from.end[at];
+    to.x[k] = from.x[at];
+    to.y[k] = from.y[at];
+    to.offset[k] = from.offset[at];
+    if (from.root != nullptr) {
+      to.root[k] = from.root[at];
+      to.error[k] = from.error[at];
+    }
+    ++k;
+  };
+  while (i < n_a && j < n_b) {
+    if (a.begin[i] <= b.begin[j]) {
+      copy(a, i++);
+    } else {
+      copy(b, j++);
+    }
+  }
+  (a + i).copy(n_a - i, to + k);
+  (b + j).copy(n_b - j, to + (k + n_a - i));
+}
+
+void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& to) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return windows.begin[a] < windows.begin[b]; });
+  for (std::size_t i = 0; i < n; ++i) (windows + order[i]).copy(1, to + i);
 }
 
 double* WindowBlock::storage() { return reinterpret_cast<double*>(this) + header_doubles; }

@@ -38,6 +38,12 @@ struct WindowArrays {
   void copy(std::size_t n, const WindowArrays& to) const;
 };
 
+/// Merges two sorted lists.
+void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b,
+                 const WindowArrays& to);
+/// Copies n windows in the order of their begin.
+void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& to);
+
 /// A list of windows on its way from one triangle to the next.
 struct WindowBlock {
   WindowBlock* next = nullptr;  ///< an older list that waits at the same half-edge
