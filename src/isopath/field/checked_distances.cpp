@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "isopath/core/error.h"
-#include "isopath/field/exact_field.h"
+#include "isopath/field/exact_distances.h"
 #include "isopath/field/virtual_source.h"
 
 namespace isopath {
@@ -56,17 +56,9 @@ CheckedDistances checked_distances(const TriangleMesh& mesh, const SourceSet& so
   const double within = sorted[std::clamp<std::size_t>(compared, 1, sorted.size()) - 1];
   // A part as far again as is acceptable, so that distances that are too short are compared as well.
   const double stop = options.sample < 1 ? within * (1 + options.max_error) : infinity;
-  // A tenth of the bound at the nearest vertex does not blur the comparison.
-  const double accuracy = 0.1 * options.max_error * sorted.front();
-  {
-    const ExactField near = ExactField::compute(mesh, sources, {.stop_distance = stop, .accuracy = accuracy}, progress);
-    result.estimated_error = largest_error(result.at_vertices, near.vertex_distances(), within);
-  }
+  result.estimated_error = largest_error(result.at_vertices, exact_distances(mesh, sources, stop, progress), within);
   if (result.estimated_error <= options.max_error) return result;
-
-  const ExactField field = ExactField::compute(
-      mesh, sources, {.stop_distance = infinity, .accuracy = options.max_error * sorted.front()}, progress);
-  result.at_vertices.assign(field.vertex_distances().begin(), field.vertex_distances().end());
+  result.at_vertices = exact_distances(mesh, sources, infinity, progress);
   result.exact = true;
   return result;
 }

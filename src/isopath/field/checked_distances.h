@@ -22,14 +22,14 @@ struct CheckedDistances {
   std::vector<double> at_vertices;  ///< in mm; infinity where no source reaches
   /// The largest relative error that virtual sources made at the vertices of the sample.
   double estimated_error = 0;
-  /// Whether that was more than acceptable, so that `at_vertices` comes from the exact field.
+  /// Whether that was more than acceptable, so that `at_vertices` are exact.
   bool exact = false;
 };
 
-/// Distances by virtual sources where these are good enough, else from `ExactField` with the accuracy that keeps every
-/// relative error within `max_error`. Whether they are good enough is estimated, not proven: they are compared with the
-/// exact distances of the vertices nearest to the sources, and errors may be larger further out.
-/// Throws Error(bad_usage) for an empty source set or invalid options, Error(cancelled) on request.
+/// Distances by virtual sources where these are good enough, else exact ones. Whether they are good enough is
+/// estimated, not proven: they are compared with the exact distances of the vertices nearest to the sources, and errors
+/// may be larger further out. Throws Error(bad_usage) for an empty source set or invalid options, Error(cancelled) on
+/// request.
 CheckedDistances checked_distances(const TriangleMesh& mesh, const SourceSet& sources,
                                    const CheckedDistancesOptions& options = {}, Progress& progress = Progress::none());
 

@@ -24,7 +24,7 @@ constexpr double bucket_width = 0.5;
 constexpr Index lists_without_memory = 64;
 /// So many lists are merged one after the other; more, as sources on a large face send them, are sorted.
 constexpr std::size_t few_lists = 8;
-constexpr std::size_t kept_chunk = 1 << 16;
+constexpr std::size_t kept_chunk = 1 << 16;  // in doubles
 
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
   double sum = 0;
@@ -441,7 +441,6 @@ void ListPropagation::run_lists() {
     for (std::size_t i = first; i < past; ++i) cross(crossings_[i], workshop);
   });
   for (const Crossing& crossing : crossings_) commit(crossing);
-  lists_ += crossings_.size();
 }
 
 void ListPropagation::run(double stop_distance, Progress& progress) {
@@ -454,7 +453,6 @@ void ListPropagation::run(double stop_distance, Progress& progress) {
       progress.checkpoint();
       if (!vertices_[bucket_].empty()) run_vertices();
       if (!halfedges_[bucket_].empty()) run_lists();
-      ++rounds_;
     }
   }
   progress.at(1);

@@ -54,8 +54,7 @@ class ListPropagation {
   /// Per half-edge.
   std::vector<FanArc>& fans() { return fans_; }
   std::size_t propagated() const { return propagated_; }
-  std::size_t lists() const { return lists_; }
-  std::size_t rounds() const { return rounds_; }
+  /// Memory of the windows behind the front, in bytes.
   std::size_t window_bytes() const;
 
  private:
@@ -115,7 +114,7 @@ class ListPropagation {
     bool tagged;
     EdgeEnvelope envelope;
     std::vector<WindowBlock*> waiting;
-    std::vector<double> arrays[4];
+    std::vector<double> arrays[4];  ///< of scratch(): two for gather(), one for news(), one for merged()
     std::vector<double> sides[2];
     std::vector<std::unique_ptr<double[]>> kept;
     double* fresh = nullptr;
@@ -174,8 +173,6 @@ class ListPropagation {
   double bucket_width_ = 1;
   double margin_ = 0;
   std::size_t propagated_ = 0;
-  std::size_t lists_ = 0;
-  std::size_t rounds_ = 0;
 };
 
 }  // namespace isopath

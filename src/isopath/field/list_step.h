@@ -27,7 +27,8 @@ std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double 
 /// Cuts off what a window's neighbour in the list reaches by a shorter way. Where the beams of circles cross, a ray
 /// that is longer at an end of the overlap is longer on all its way beyond the crossing; of straight fronts only the
 /// overlap is cut. Reads `windows`, writes the intervals that are left to `begin` and `end`; an empty one has begin >=
-/// end. Returns false when nothing overlaps; then nothing is written.
+/// end. Returns false, and writes nothing, where fewer than a quarter of the windows overlap with more than the next
+/// one: it is not worth its time there.
 bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margin, double* begin, double* end);
 
 /// Drops empty intervals; returns the number left.

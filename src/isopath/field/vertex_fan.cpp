@@ -15,16 +15,6 @@ double hit_fraction(const Vec2& p, const Vec2& q, const Vec2& d) {
 
 }  // namespace
 
-double total_angle(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, Index vertex) {
-  double sum = 0;
-  Index h = mesh.outgoing(vertex);
-  do {
-    sum += geometry.angle_at_tail(h);
-    h = mesh.next_outgoing(h);
-  } while (h != no_index && h != mesh.outgoing(vertex));
-  return sum;
-}
-
 bool may_bend(const TriangleMesh& mesh, Index vertex, double total_angle) {
   return total_angle > (mesh.is_boundary_vertex(vertex) ? 1 : 2) * std::numbers::pi + angle_slack;
 }

@@ -18,9 +18,6 @@ struct BlockedArc {
 /// Angles are sums of a few arcus tangents, each good to 1e-16; a fan is opened this much wider than its shadow.
 constexpr double angle_slack = 1e-12;
 
-/// The sum of the angles of the faces around a vertex.
-double total_angle(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, Index vertex);
-
 /// True when shortest paths may bend at a vertex of this total angle: it is a saddle, or a reflex corner of the
 /// boundary.
 bool may_bend(const TriangleMesh& mesh, Index vertex, double total_angle);
