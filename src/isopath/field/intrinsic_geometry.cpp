@@ -11,22 +11,13 @@
 #include <limits>
 
 #include "isopath/core/error.h"
+#include "isopath/field/triangle_layout.h"
 
 namespace isopath {
 namespace {
 
 /// Lengths of points on one line break the triangle inequality by a few roundings.
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
-
-/// The corner opposite `base`, which `left` joins to the base's start and `right` to its end. The area by Kahan
-/// ("Miscalculating area and angles of a needle-like triangle"): stable for needles.
-Vec2 apex_of(double base, double right, double left) {
-  std::array<double, 3> s = {base, right, left};
-  std::sort(s.begin(), s.end(), std::greater<>());
-  const double product =
-      (s[0] + (s[1] + s[2])) * (s[2] - (s[0] - s[1])) * (s[2] + (s[0] - s[1])) * (s[0] + (s[1] - s[2]));
-  return {0.5 * (base + (left - right) * ((left + right) / base)), 0.5 * std::sqrt(std::max(0.0, product)) / base};
-}
 
 void check_lengths(const TriangleMesh& mesh, std::span<const double> lengths) {
   if (static_cast<Index>(lengths.size()) != mesh.n_edges()) {
