@@ -31,6 +31,16 @@ picture meander meander --hide tool
 picture two_way two_way --hide tool,arrows
 picture spray_path blade
 
+# sources of a few numbers: isolines of the distance from each
+sources_on_plate() { # NAME SOURCE
+  plan "source_$1" data/patch_100mm_a.off --source "$2" --pattern contour --spacing 10
+  picture "source_$1" "source_$1" --size 480x320 --view top --hide tool,path,arrows --show isolines
+}
+sources_on_plate geodesic geodesic:20,30,0:80,60,0
+sources_on_plate cut cut:0:30
+sources_on_plate segment segment:0:0,0.3
+sources_on_plate offset offset:50,20
+
 # the medial axis over isolines, seen from above
 plate=(data/patch_100mm_a.off --source boundary --quiet)
 build/isopath medial-axis "${plate[@]}" --prune 0.5 -o "$out/axis.csv"
