@@ -18,7 +18,7 @@ using test::PointDistance;
 using test::random_values;
 using test::square;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::set<Index> faces_around(const TriangleMesh& mesh, const SurfacePoint& point) {
   std::set<Index> faces{point.face};

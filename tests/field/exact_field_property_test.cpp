@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "field/field_from.h"
 #include "isopath/field/exact_field.h"
 #include "support/random_sources.h"
 #include "support/slow_exact.h"
@@ -19,12 +20,6 @@ namespace {
 
 TriangleMesh mesh_of_seed(std::uint64_t seed, Rng& rng) {
   return random_mesh(rng, {.closed = seed % 3 == 0, .holes = seed % 5 == 0, .slivers = seed % 4 == 0});
-}
-
-ExactField field_from(const TriangleMesh& mesh, const SurfacePoint& point) {
-  SourceSet sources;
-  sources.add_point(point);
-  return ExactField::compute(mesh, sources);
 }
 
 double judge_tolerance(const TriangleMesh& mesh) { return 1e-10 * mesh.size(); }

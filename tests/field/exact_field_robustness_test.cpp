@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/field_from.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/graph_field.h"
 #include "isopath/mesh/refine.h"
@@ -132,12 +133,6 @@ void on_hard_meshes(std::uint64_t first, std::uint64_t last, Check check) {
     SCOPED_TRACE(fmt::format("seed {} ({}, {} faces)", seed, hard.kind, hard.mesh.n_faces()));
     check(rng, hard.mesh);
   }
-}
-
-ExactField field_from(const TriangleMesh& mesh, const SurfacePoint& point) {
-  SourceSet sources;
-  sources.add_point(point);
-  return ExactField::compute(mesh, sources);
 }
 
 void expect_same(const TriangleMesh& mesh, double found, double expected) {

@@ -13,7 +13,7 @@
 namespace isopath::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Distance in the plane to the nearest element.
 double planar_distance(const TriangleMesh& mesh, const SourceSet& sources, const Vec3& at) {

@@ -10,11 +10,20 @@
 #include "isopath/impact/gap.h"
 #include "isopath/impact/impact_curve.h"
 #include "isopath/impact/surface_curve.h"
+#include "isopath/mesh/normals.h"
 #include "isopath/mesh/surface_walk.h"
 #include "support/test_meshes.h"
 
 /// What every curve on a surface promises, checked point by point.
 namespace isopath::test {
+
+/// A mesh with what curves on it are made with.
+struct Plate {
+  TriangleMesh mesh;
+  SurfaceLocator locator{mesh};
+  SurfaceLinker linker{mesh, locator};
+  SmoothNormals normals{mesh};
+};
 
 /// Consecutive points share a face, and positions are those of the points.
 inline void expect_on_surface(const TriangleMesh& mesh, const SurfaceCurve& curve) {

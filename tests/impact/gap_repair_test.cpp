@@ -10,20 +10,13 @@
 namespace isopath {
 namespace {
 
-struct Plate {
-  TriangleMesh mesh;
-  SurfaceLocator locator{mesh};
-  SurfaceLinker linker{mesh, locator};
-  SmoothNormals normals{mesh};
-};
-
 bool same(const ImpactPoint& a, const ImpactPoint& b) {
   return a.kind == b.kind && a.at.face == b.at.face && a.at.barycentric == b.at.barycentric &&
          a.position == b.position && a.normal == b.normal && a.piece == b.piece;
 }
 
 TEST(gap_repair, leaves_a_curve_without_wide_gaps_as_it_is) {
-  const Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
+  const test::Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
   const std::vector<double> xs{1, 3, 5, 7, 9, 11, 13, 15, 17, 19};
   ImpactCurve curve = test::parallel_lines(plate.linker, xs, 20);
   const ImpactCurve before = curve;
@@ -33,7 +26,7 @@ TEST(gap_repair, leaves_a_curve_without_wide_gaps_as_it_is) {
 }
 
 /// After the repair: no wide gap is left, the curve is in as many pieces as before, and covers what it covered before.
-void expect_repaired(const Plate& plate, double spacing, const ImpactCurve& before, const ImpactCurve& after) {
+void expect_repaired(const test::Plate& plate, double spacing, const ImpactCurve& before, const ImpactCurve& after) {
   test::expect_valid(plate.mesh, after);
   EXPECT_EQ(test::pieces_of(after), test::pieces_of(before));
   const GapReport was = measure_gap(plate.mesh, before, spacing);
@@ -47,7 +40,7 @@ void expect_repaired(const Plate& plate, double spacing, const ImpactCurve& befo
 }
 
 TEST(gap_repair, fills_in_for_a_missing_line) {
-  const Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
+  const test::Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
   const std::vector<double> xs{1, 3, 5, 7, 11, 13, 15, 17, 19};
   const ImpactCurve before = test::parallel_lines(plate.linker, xs, 20);
   ImpactCurve curve = before;
@@ -60,7 +53,7 @@ TEST(gap_repair, fills_in_for_a_missing_line) {
 }
 
 TEST(gap_repair, goes_round_and_round_in_a_bare_patch) {
-  const Plate plate{test::planar_grid(24, 24, 24, 24, {.jitter = 0.2})};
+  const test::Plate plate{test::planar_grid(24, 24, 24, 24, {.jitter = 0.2})};
   const std::vector<double> xs{1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23};
   ImpactCurve before;
   Vec3 end = Vec3::Zero();
@@ -96,7 +89,7 @@ TEST(gap_repair, goes_round_and_round_in_a_bare_patch) {
 
 TEST(gap_repair, works_on_a_curved_surface) {
   // A single ring at the equator's half height: both sides of the hemisphere are bare.
-  const Plate dome{test::hemisphere(12, 48, 20)};
+  const test::Plate dome{test::hemisphere(12, 48, 20)};
   ImpactCurve curve;
   const SurfaceLinker& linker = dome.linker;
   SurfaceCurve ring;

@@ -14,12 +14,6 @@
 namespace isopath {
 namespace {
 
-struct Plate {
-  TriangleMesh mesh;
-  SurfaceLocator locator{mesh};
-  SurfaceLinker linker{mesh, locator};
-};
-
 std::vector<double> every(double spacing, double from, double to) {
   std::vector<double> xs;
   for (double x = from + spacing / 2; x < to; x += spacing) xs.push_back(x);
@@ -34,7 +28,7 @@ void expect_shares(const GapReport& report) {
 }
 
 TEST(gap, between_parallel_lines_is_known_everywhere) {
-  const Plate plate{test::planar_grid(13, 7, 20, 10, {.jitter = 0.2})};
+  const test::Plate plate{test::planar_grid(13, 7, 20, 10, {.jitter = 0.2})};
   for (const double w : {0.5, 1.0, 2.0}) {
     const ImpactCurve curve = test::parallel_lines(plate.linker, every(w, 0, 20), 10);
     test::expect_valid(plate.mesh, curve);
@@ -61,7 +55,7 @@ TEST(gap, between_parallel_lines_is_known_everywhere) {
 }
 
 TEST(gap, of_a_plate_covered_by_half_says_so) {
-  const Plate plate{test::planar_grid(10, 5, 20, 10)};
+  const test::Plate plate{test::planar_grid(10, 5, 20, 10)};
   const double w = 1;
   const GapReport report = measure_gap(plate.mesh, test::parallel_lines(plate.linker, every(w, 0, 10), 10), w);
   // The last line is at 9.5; a gap of 1.02 spacings is reached at 9.5 + 0.51.
@@ -103,7 +97,7 @@ TEST(gap, at_vertices_is_twice_the_exact_distance) {
 }
 
 TEST(gap, is_infinite_where_no_pass_reaches) {
-  const Plate plate{test::planar_cells(5, 2, [](int i, int) { return i != 2; })};  // two plates, 1 apart
+  const test::Plate plate{test::planar_cells(5, 2, [](int i, int) { return i != 2; })};  // two plates, 1 apart
   ImpactCurve curve;
   test::append(curve, test::line(plate.linker, {1, 0, 0}, {1, 2, 0}), MoveKind::cover);
   const GapReport report = measure_gap(plate.mesh, curve, 2);
@@ -114,7 +108,7 @@ TEST(gap, is_infinite_where_no_pass_reaches) {
 }
 
 TEST(gap, counts_covering_moves_only) {
-  const Plate plate{test::planar_grid(20, 10, 20, 10)};
+  const test::Plate plate{test::planar_grid(20, 10, 20, 10)};
   // A line at x = 2, a link along the boundary and across at x = 18, a lift from there.
   ImpactCurve curve;
   test::append(curve, test::line(plate.linker, {2, 0, 0}, {2, 10, 0}), MoveKind::cover);
@@ -133,7 +127,7 @@ TEST(gap, counts_covering_moves_only) {
 }
 
 TEST(gap, needs_a_spacing_and_a_covering_move) {
-  const Plate plate{test::planar_grid(2, 2, 2, 2)};
+  const test::Plate plate{test::planar_grid(2, 2, 2, 2)};
   const ImpactCurve curve = test::parallel_lines(plate.linker, std::vector{1.0}, 2);
   for (const double spacing : {0.0, -1.0, std::nan(""), infinity}) {
     try {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -14,6 +13,7 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/impact/impact_plan.h"
 #include "isopath/mesh/read_mesh.h"
+#include "support/stop_at.h"
 
 namespace isopath {
 namespace {
@@ -137,23 +137,12 @@ TEST(impact_plan_invariance, asks_in_every_stage_whether_to_stop) {
   }
 }
 
-/// Wants to stop when it is asked for the n-th time.
-class StopAt final : public Progress {
- public:
-  explicit StopAt(long n) : left_(n) {}
-  bool cancelled() const override { return --left_ <= 0; }
-  long asked_since(long n) const { return n - left_; }
-
- private:
-  mutable std::atomic<long> left_;
-};
-
 TEST(impact_plan_invariance, stops_whenever_it_is_asked_to) {
   const TriangleMesh mesh = test::notched_ellipse(10, 48, 60, 40);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   constexpr long never = 1L << 40;
-  const StopAt* counter = nullptr;
-  StopAt all(never);
+  const test::StopAt* counter = nullptr;
+  test::StopAt all(never);
   counter = &all;
   const ImpactCurve curve = plan(mesh, 5, all).curve;
   measure_gap(mesh, curve, 5, all);
@@ -162,7 +151,7 @@ TEST(impact_plan_invariance, stops_whenever_it_is_asked_to) {
   test::Rng rng(3);
   for (int k = 0; k < 25; ++k) {
     const long at = k == 0 ? 1 : k == 1 ? asked : 1 + test::random_index(rng, static_cast<Index>(asked));
-    StopAt progress(at);
+    test::StopAt progress(at);
     try {
       const ImpactCurve whole = plan(mesh, 5, progress).curve;
       measure_gap(mesh, whole, 5, progress);

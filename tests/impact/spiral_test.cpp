@@ -11,11 +11,12 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/impact/passes.h"
+#include "support/stop_at.h"
 
 namespace isopath {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A surface with its distance from the boundary, and the spiral through all its contours.
 struct Spiralled {
@@ -38,16 +39,6 @@ struct Spiralled {
   double value(std::size_t i) const { return field.value(curve.points[i]); }
   double first_level() const { return contours.front()->level; }
   double last_level() const { return contours.back()->level; }
-};
-
-/// Wants to stop when it is asked for the n-th time.
-class StopAt final : public Progress {
- public:
-  explicit StopAt(long n) : left_(n) {}
-  bool cancelled() const override { return --left_ <= 0; }
-
- private:
-  mutable long left_;
 };
 
 /// From the last point of the first whole ring to the first point of the last one.
@@ -198,7 +189,7 @@ TEST(spiral, asks_all_along_whether_to_stop) {
   const auto n = static_cast<long>(s.curve.size());
   ASSERT_GT(n, 100);
   for (const long at : {1L, n / 8, n / 4}) {  // one extension may add several points
-    StopAt progress(at);
+    test::StopAt progress(at);
     EXPECT_THROW(spiral(s.linker, s.field, s.contours, Vec3(20, 0, 0), progress), Error) << at;
   }
 }

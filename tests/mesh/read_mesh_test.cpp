@@ -106,7 +106,7 @@ struct Sample {
   std::string content;
 };
 
-std::vector<Sample> samples() {
+std::vector<Sample> sample_files() {
   return {{"binary.stl", binary_stl(tetrahedron)},
           {"solid_binary.stl", binary_stl(tetrahedron, "solid and yet binary")},
           {"ascii.stl", ascii_stl(tetrahedron)},
@@ -141,7 +141,7 @@ Error error_of(const std::string& content, const std::string& name) {
 }
 
 TEST(ReadMesh, EveryFormatGivesTheSameTetrahedron) {
-  for (const auto& [name, content] : samples()) {
+  for (const auto& [name, content] : sample_files()) {
     const MeshFile file = read_mesh_content(content, name);
     EXPECT_EQ(corners(file.soup), corners(tetrahedron)) << name;
     EXPECT_EQ(file.soup.positions.size(), 4u) << name;
@@ -150,7 +150,7 @@ TEST(ReadMesh, EveryFormatGivesTheSameTetrahedron) {
 }
 
 TEST(ReadMesh, ContentDecidesBeforeExtension) {
-  for (const auto& [name, content] : samples()) {
+  for (const auto& [name, content] : sample_files()) {
     EXPECT_EQ(read_mesh_content(content, "part.dat").soup.triangles.size(), 4u) << name;
     EXPECT_EQ(read_mesh_content(content, "part.stl").soup.triangles.size(), 4u) << name;
   }
@@ -288,7 +288,7 @@ TEST(ReadMesh, MissingFileIsNamed) {
 
 /// Truncates, flips, removes and doubles bytes: the reader returns or throws Error, nothing else.
 TEST(ReadMesh, SurvivesMutatedFiles) {
-  const auto all = samples();
+  const auto all = sample_files();
   for (std::uint64_t seed = 0; seed < 1000 * all.size(); ++seed) {
     std::mt19937_64 random(seed);
     auto [name, content] = all[seed % all.size()];

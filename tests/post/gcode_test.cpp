@@ -9,6 +9,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/post/follow_axis.h"
+#include "post/occurrences.h"
 #include "post/test_paths.h"
 
 namespace isopath {
@@ -42,12 +43,6 @@ std::vector<Block> moves_of(const std::string& program) {
     if (within && block.words.contains('X')) moves.push_back(block);
   }
   return moves;
-}
-
-std::size_t count(const std::string& text, const std::string& what) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
 }
 
 // A path that a 5-axis program needs no more points for.
@@ -122,9 +117,9 @@ TEST(Gcode, ALiftAtTheEndOrBeforeAnotherOneComesDownAtItsFeed) {
 TEST(Gcode, SprayIsOnOnTheSurfaceOnly) {
   const ToolPath path = five_axis_path();
   const std::string program = gcode(path, {.process = Process::spray});
-  EXPECT_EQ(count(program, "M3"), 0U);
-  EXPECT_EQ(count(program, "\nM7"), 3U);
-  EXPECT_EQ(count(program, "\nM9"), 3U);
+  EXPECT_EQ(test::occurrences(program, "M3"), 0U);
+  EXPECT_EQ(test::occurrences(program, "\nM7"), 3U);
+  EXPECT_EQ(test::occurrences(program, "\nM9"), 3U);
   bool on = false;
   std::size_t i = 0;
   for (const Block& block : blocks_of(program)) {
@@ -143,7 +138,7 @@ TEST(Gcode, MillingTurnsTheSpindleFromBeforeTheApproachToAfterTheRetreat) {
   const std::string program = gcode(test::full_path(test::wavy_zigzag()), {.spindle_rpm = 8000});
   EXPECT_LT(program.find("S8000 M3\n"), program.find("(approach)"));
   EXPECT_GT(program.find("\nM5\n"), program.find("(path ends)"));
-  EXPECT_EQ(count(program, "(piece "), 3U);
+  EXPECT_EQ(test::occurrences(program, "(piece "), 3U);
   EXPECT_NE(program.find("G21 G90 G17 G40 G49 G94\n"), std::string::npos);
   EXPECT_LT(program.find("M428"), program.find("(path begins)"));
   EXPECT_GT(program.find("M429"), program.find("(path ends)"));

@@ -10,6 +10,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/post/base64.h"
+#include "post/occurrences.h"
 
 namespace isopath {
 namespace {
@@ -19,12 +20,6 @@ TriangleMesh triangle() {
   soup.positions = {{1e6, 0, 0}, {1e6 + 1, 0, 0}, {1e6, 1, 0}};
   soup.triangles = {{0, 1, 2}};
   return TriangleMesh(soup);
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
 }
 
 /// Content of the script element with this id.
@@ -48,7 +43,7 @@ TEST(Base64, PaddingFollowsTheLength) {
     const std::vector<std::uint32_t> words(n, 0xffffffffu);
     const std::string text = base64_of(std::span<const std::uint32_t>(words));
     EXPECT_EQ(text.size(), (4 * n + 2) / 3 * 4);
-    EXPECT_EQ(count(text, "="), (3 - 4 * n % 3) % 3);
+    EXPECT_EQ(test::occurrences(text, "="), (3 - 4 * n % 3) % 3);
   }
 }
 
@@ -78,7 +73,7 @@ TEST(Report, TextOfOthersStaysText) {
   EXPECT_EQ(html.find("<b>"), std::string::npos);
   EXPECT_EQ(html.find("<i>"), std::string::npos);
   // Title and heading, five places of the table and the warning.
-  EXPECT_EQ(count(html, "&lt;i&gt;"), 6u);
+  EXPECT_EQ(test::occurrences(html, "&lt;i&gt;"), 6u);
   EXPECT_NE(block(html, "meta").find("\\u003c/script>"), std::string::npos);
 }
 
@@ -86,9 +81,9 @@ TEST(Report, EveryPlaceOfThePageIsFilled) {
   const TriangleMesh mesh = triangle();
   const std::string html = report_html({.title = "part", .mesh = &mesh});
   const std::size_t script = html.rfind("<script>");
-  EXPECT_EQ(count(html.substr(0, html.find("<style>")), "{{"), 0u);
-  EXPECT_EQ(count(html.substr(html.find("</style>"), script - html.find("</style>")), "{{"), 0u);
-  EXPECT_EQ(count(html.substr(script), "</script>"), 1u) << "the viewer's own script must not end early";
+  EXPECT_EQ(test::occurrences(html.substr(0, html.find("<style>")), "{{"), 0u);
+  EXPECT_EQ(test::occurrences(html.substr(html.find("</style>"), script - html.find("</style>")), "{{"), 0u);
+  EXPECT_EQ(test::occurrences(html.substr(script), "</script>"), 1u) << "the viewer's own script must not end early";
 }
 
 TEST(Report, RefersToNothingOutside) {

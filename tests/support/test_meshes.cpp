@@ -11,7 +11,7 @@
 namespace isopath::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Turns a quadrilateral a b c d (counter-clockwise) into two triangles.
 void add_quad(TriangleSoup& soup, Index a, Index b, Index c, Index d, bool other_diagonal = false) {

@@ -6,7 +6,7 @@ namespace isopath {
 namespace {
 
 /// Distances carry a rounding error of a few units in the last place; a difference below it decides nothing.
-constexpr double rounding = 1e-15;
+constexpr double tie_rounding = 1e-15;
 /// A path along an edge must not displace a front that reaches the same points a hair's breadth beside it (see
 /// Window::filler).
 constexpr double filler_margin = 1e-12;
@@ -15,7 +15,7 @@ constexpr double filler_margin = 1e-12;
 bool beats(const Window& window, const Window& old, double x) {
   const double mine = window.distance(x);
   const double theirs = old.distance(x);
-  if (window.filler == old.filler) return mine < theirs - rounding * theirs;
+  if (window.filler == old.filler) return mine < theirs - tie_rounding * theirs;
   const double margin = filler_margin * theirs + window.error + old.error;
   return mine < theirs - (window.filler ? margin : -margin);
 }

@@ -17,7 +17,7 @@ namespace isopath {
 namespace {
 
 /// Lengths of points on one line break the triangle inequality by a few roundings.
-constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+constexpr double length_rounding = 8 * std::numeric_limits<double>::epsilon();
 
 void check_lengths(const TriangleMesh& mesh, std::span<const double> lengths) {
   if (static_cast<Index>(lengths.size()) != mesh.n_edges()) {
@@ -36,7 +36,7 @@ void check_lengths(const TriangleMesh& mesh, std::span<const double> lengths) {
     std::array<double, 3> s;
     for (int i = 0; i < 3; ++i) s[i] = lengths[mesh.edge_of(3 * f + i)];
     std::sort(s.begin(), s.end());
-    if (s[2] - s[1] <= s[0] + rounding * s[2]) continue;
+    if (s[2] - s[1] <= s[0] + length_rounding * s[2]) continue;
     throw Error(ErrorCode::bad_input,
                 "a face cannot have these edge lengths: one is longer than the other two together",
                 {.element = fmt::format("face {}", f),
@@ -84,7 +84,7 @@ IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh, std::span<const d
       if (space.length_[other] > space.length_[h]) h = other;
     }
     const Vec2& apex = space.apex_[h];
-    if (!(apex.y() > rounding * space.length_[h])) continue;  // all its points are on its edges
+    if (!(apex.y() > length_rounding * space.length_[h])) continue;  // all its points are on its edges
     // the map from space to the layout is [a b; 0 d]
     const double a = length_[h] / space.length_[h];
     const double b = (apex_[h].x() - a * apex.x()) / apex.y();

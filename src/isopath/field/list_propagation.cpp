@@ -14,7 +14,7 @@ namespace isopath {
 namespace {
 
 /// Distances are sums of a few square roots; a difference below this part of the model's size decides nothing.
-constexpr double rounding = 1e-14;
+constexpr double margin_of_size = 1e-14;
 /// So few items are not worth waking another thread for.
 constexpr std::size_t worth_sharing = 32;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
@@ -54,7 +54,7 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       kept_(options.retain ? mesh.n_halfedges() : 0, nullptr),
       workshops_(options.retain),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
-      margin_(rounding * geometry.size() + 2 * options.limits.accuracy) {
+      margin_(margin_of_size * geometry.size() + 2 * options.limits.accuracy) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     Site& site = sites_[h];
     site.length = geometry.length(h);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr float unreached = std::numeric_limits<float>::infinity();
 /// Single precision: a shorter way by less than this share is no improvement.
-constexpr float rounding = 1e-6F;
+constexpr float single_rounding = 1e-6F;
 /// A ray that misses an end of a half-edge by less than this share of its length passes it.
 constexpr float grazing = 1e-5F;
 /// Growth of the lit part of a half-edge, as a share of its length, that is worth another look.
@@ -35,9 +35,9 @@ constexpr float widest_gap = 0.15F;
 /// only means that light is still to come.
 constexpr float flat = 1e-4F;
 /// Cosine of the angle between two beams above which they are parts of one front, not fronts that meet.
-constexpr float same_direction = 0.95F;
+constexpr float same_heading = 0.95F;
 /// Width of a bucket of the queue in units of the layout.
-constexpr float bucket_width = 0.5F;
+constexpr float bucket_step = 0.5F;
 
 constexpr std::array<std::uint32_t, 3> next_corner{1, 2, 0};
 constexpr std::array<std::uint32_t, 3> previous_corner{2, 0, 1};
@@ -70,7 +70,7 @@ class VirtualSources {
         layout_(mesh),
         distance_(mesh.n_vertices(), unreached),
         fanned_(mesh.n_vertices(), unreached),
-        queue_(bucket_width) {
+        queue_(bucket_step) {
     beams_.resize(3 * layout_.faces.size());  // so that references stay good; pages come as they are touched
   }
 
@@ -129,7 +129,7 @@ template <bool with_segments>
   Light& held = beams_[record];
   if (held.bent == beam.bent) {
     join(door, held, beam);
-  } else if (beam.value < held.value * (1 - rounding)) {
+  } else if (beam.value < held.value * (1 - single_rounding)) {
     beam.errand = held.errand;
     held = beam;
     wait(h, held, seen.straight);
@@ -142,7 +142,7 @@ template <bool with_segments>
 template <bool with_segments>
 [[gnu::noinline]] void VirtualSources<with_segments>::join(const Door& door, Light& held, Light beam) {
   const float slack = grazing * door.length;
-  const bool better = beam.value < held.value * (1 - rounding);
+  const bool better = beam.value < held.value * (1 - single_rounding);
   const float gain = std::max(held.low - beam.low, beam.high - held.high);
   if (!better && gain <= enough_light * door.length) return;
   beam.errand = held.errand;
@@ -165,7 +165,7 @@ template <bool with_segments>
     const FlatPoint to_joint = end - nearest(joint, end);
     const FlatPoint to_other = end - nearest(other, end);
     const float distance = norm(to_other);
-    if (dot(to_joint, to_other) > same_direction * norm(to_joint) * distance) turn(joint, pivot, end, distance);
+    if (dot(to_joint, to_other) > same_heading * norm(to_joint) * distance) turn(joint, pivot, end, distance);
   }
   const Sight seen = sight(joint, door.apex);
   joint.value = std::min(joint.value, way_to(joint, door.apex, seen, slack));
@@ -248,13 +248,13 @@ void VirtualSources<with_segments>::bend(const Door& door, Light& held, const Si
   const std::uint32_t vertex = at_tail ? door.tail() : door.head();
   const float last = door.face.length[at_tail ? previous_corner[door.corner] : next_corner[door.corner]];
   const float way = distance_[vertex] + last;
-  if (distance_[door.top()] < way * (1 - rounding) || way - seen.straight < slight_bend * last) return;
+  if (distance_[door.top()] < way * (1 - single_rounding) || way - seen.straight < slight_bend * last) return;
   if (!(distance_[vertex] < fanned_[vertex])) return;
-  if (queue_.due(way + bucket_width)) {
+  if (queue_.due(way + bucket_step)) {
     fan_from(vertex);
   } else {
     held.errand = Errand::bend;
-    queue_.push(way + bucket_width, door.h);
+    queue_.push(way + bucket_step, door.h);
   }
 }
 
@@ -337,7 +337,7 @@ bool VirtualSources<with_segments>::shorten_along_edges() {
       std::uint32_t a = face.vertex[i];
       std::uint32_t b = face.vertex[next_corner[i]];
       if (distance_[a] > distance_[b]) std::swap(a, b);
-      if (!((distance_[a] + face.length[i]) * (1 + rounding) < distance_[b])) continue;
+      if (!((distance_[a] + face.length[i]) * (1 + single_rounding) < distance_[b])) continue;
       fan_from(a);
       found = true;
     }

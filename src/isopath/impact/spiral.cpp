@@ -12,7 +12,7 @@ namespace isopath {
 namespace {
 
 /// A closed contour made ready for a strip: starting point first, and once more at the end; long chords divided.
-struct Ring {
+struct Loop {
   double level = 0;
   SurfaceCurve curve;
   std::vector<double> arc;  ///< fraction of the whole length at each point, 0 to 1
@@ -28,10 +28,10 @@ SurfacePoint between(const TriangleMesh& mesh, const SurfacePoint& a, const Surf
 
 /// Points nearer than `shortest` to the last kept one are skipped, chords longer than `longest` divided: a strip needs
 /// rungs that are evenly spread, and no more of them than the spacing asks for.
-Ring make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& start, double shortest, double longest) {
+Loop make_ring(const TriangleMesh& mesh, const Contour& contour, const Vec3& start, double shortest, double longest) {
   const SurfaceCurve all = make_curve(mesh, contour.points);
   const SurfaceCurve turned = rotated(all, nearest_index(all, start));
-  Ring ring;
+  Loop ring;
   ring.level = contour.level;
   double since_kept = 0;
   for (std::size_t i = 0; i < turned.size(); ++i) {
@@ -114,8 +114,8 @@ class SpiralBuilder {
     const double gap = std::abs(to.level - from.level);
     const double shortest = 0.15 * gap;
     const double longest = 0.5 * gap;
-    const Ring p = make_ring(linker_.mesh(), from, end(), shortest, longest);
-    const Ring q = make_ring(linker_.mesh(), to, end(), shortest, longest);
+    const Loop p = make_ring(linker_.mesh(), from, end(), shortest, longest);
+    const Loop q = make_ring(linker_.mesh(), to, end(), shortest, longest);
     const Strip strip = least_strip(p.curve.positions, q.curve.positions, gap, 6 * gap, progress_);
     if (strip.empty()) return splits > 0 && turn_in_two(from, to, splits - 1);
     for (const auto& [i, j] : strip) {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ struct RawMesh {
   /// Adds a polygon as a fan around its first corner; it must have three corners or more.
   void add_polygon(std::span<const Index> corners);
 };
+
+/// The ending of a file's name with its dot, ASCII letters in lower case.
+std::string lower_extension(const std::filesystem::path& path);
 
 bool is_ascii_stl(std::string_view content);
 /// A binary STL whose size agrees with its triangle count.

@@ -9,13 +9,13 @@
 namespace isopath {
 namespace {
 
-struct Header {
+struct OffHeader {
   std::string flags;  ///< letters before "OFF": ST texture, C colours, N normals, 4 and n other dimensions
   std::string_view rest;
 };
 
 /// Splits the first word around "OFF"; false when it is no OFF keyword. "OFF8" is "OFF" followed by 8.
-bool parse_keyword(std::string_view word, Header& header) {
+bool parse_keyword(std::string_view word, OffHeader& header) {
   const std::size_t at = word.find("OFF");
   if (at == std::string_view::npos || at > 5) return false;
   header.flags = word.substr(0, at);
@@ -126,13 +126,13 @@ void read_faces(TextScanner& scanner, std::uint64_t count, std::uint64_t n_verti
 
 bool is_off(std::string_view content) {
   TextScanner scanner(content.substr(0, 4096), '#');
-  Header header;
+  OffHeader header;
   return parse_keyword(scanner.next_word(), header);
 }
 
 RawMesh read_off(std::string_view content, Progress& progress) {
   TextScanner scanner(content, '#');
-  Header header;
+  OffHeader header;
   const std::string_view keyword = scanner.next_word();
   if (!parse_keyword(keyword, header)) {
     scanner.fail("the keyword 'OFF' is missing", keyword, "the first word of an OFF file is OFF");

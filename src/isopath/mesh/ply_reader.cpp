@@ -30,7 +30,7 @@ struct Element {
 
 enum class Encoding { ascii, little_endian, big_endian };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
   std::size_t end = 0;
@@ -89,8 +89,8 @@ Element parse_element(TextScanner& scanner) {
   return element;
 }
 
-Header parse_header(TextScanner& scanner) {
-  Header header;
+PlyHeader parse_header(TextScanner& scanner) {
+  PlyHeader header;
   bool encoding_seen = false;
   if (!scanner.next_line() || scanner.word() != "ply") {
     scanner.fail("the keyword 'ply' is missing", scanner.rest_of_line(), "the first line of a PLY file is 'ply'");
@@ -273,7 +273,7 @@ void read_face(Source& source, const Element& element, std::vector<Index>& corne
 }
 
 template <typename Source>
-RawMesh read_elements(Source& source, const Header& header, std::uint64_t n_vertices, Progress& progress) {
+RawMesh read_elements(Source& source, const PlyHeader& header, std::uint64_t n_vertices, Progress& progress) {
   RawMesh mesh;
   std::vector<Index> corners;
   for (const Element& element : header.elements) {
@@ -303,7 +303,7 @@ RawMesh read_elements(Source& source, const Header& header, std::uint64_t n_vert
 }
 
 /// Number of vertices, after checking that the header describes a surface.
-std::uint64_t check_header(const Header& header) {
+std::uint64_t check_header(const PlyHeader& header) {
   const auto missing = [](std::string what, const Element* element) -> Error {
     return {ErrorCode::bad_input,
             std::move(what),
@@ -339,7 +339,7 @@ std::uint64_t check_header(const Header& header) {
 
 RawMesh read_ply(std::string_view content, Progress& progress) {
   TextScanner scanner(content);
-  const Header header = parse_header(scanner);
+  const PlyHeader header = parse_header(scanner);
   const std::uint64_t n_vertices = check_header(header);
   if (header.encoding == Encoding::ascii) {
     AsciiSource source(scanner);

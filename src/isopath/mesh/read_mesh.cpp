@@ -19,14 +19,6 @@ namespace {
 
 enum class Format { stl, obj, ply, off, step, unknown };
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
 bool looks_like_obj(std::string_view content) {
   TextScanner scanner(content.substr(0, 4096), '#');
   if (!scanner.next_line()) return false;
@@ -124,6 +116,14 @@ MeshFile weld(RawMesh&& raw, bool merge) {
 }
 
 }  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
 
 void ReadOptions::validate() const {
   step.validate();

@@ -2,26 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <string>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/mesh_formats.h"
 #ifdef ISOPATH_HAS_STEP
 #include "isopath/mesh/step/tessellate.h"
 #endif
 
 namespace isopath {
 namespace {
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
 
 bool is_iges(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

@@ -284,7 +284,7 @@ void find_cusps(const CurvedSurface& surface, const BallSweep& sweep, const std:
   }
 }
 
-void require_positive(const char* what, double value) {
+void require_length(const char* what, double value) {
   if (value > 0 && std::isfinite(value)) return;
   throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
               {.element = what, .value = fmt::format("{}", value)});
@@ -308,7 +308,7 @@ double scallop_on_convex(double spacing, double ball_radius, double surface_radi
 }
 
 double scallop_pitch(double height, double ball_radius) {
-  require_positive("ball_radius", ball_radius);
+  require_length("ball_radius", ball_radius);
   if (!(height > 0 && height < ball_radius)) {
     throw Error(ErrorCode::bad_usage, "the scallop height must lie between 0 and the ball's radius",
                 {.element = "scallop", .value = fmt::format("{} mm, radius {} mm", height, ball_radius)});
@@ -318,8 +318,8 @@ double scallop_pitch(double height, double ball_radius) {
 
 ScallopReport measure_scallop(const TriangleMesh& mesh, const ImpactCurve& curve, double ball_radius, double spacing,
                               Progress& progress) {
-  require_positive("ball_radius", ball_radius);
-  require_positive("spacing", spacing);
+  require_length("ball_radius", ball_radius);
+  require_length("spacing", spacing);
   progress.stage("scallop");
   const CurvedSurface surface(mesh);
   const std::vector<Move> moves = covering_moves(mesh, curve);
