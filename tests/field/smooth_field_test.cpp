@@ -15,6 +15,8 @@
 namespace isopath::test {
 namespace {
 
+using std::numbers::pi;
+
 using Values = std::vector<double>;
 
 Values sampled(const TriangleMesh& mesh, const std::function<double(const Vec3&)>& f) {
@@ -168,7 +170,6 @@ TEST(SmoothField, ModesOfASquareDecayAsTheyShould) {
   const TriangleMesh mesh = planar_grid(60, 60, 1, 1, {.jitter = 0.2, .seed = 5});
   const SurfaceLaplacian laplacian = surface_laplacian(mesh);
   for (const auto& [m, n] : {std::pair{1, 0}, std::pair{1, 2}, std::pair{3, 1}}) {
-    const double pi = std::numbers::pi;
     const Values f = sampled(mesh, [&](const Vec3& p) { return std::cos(m * pi * p.x()) * std::cos(n * pi * p.y()); });
     const double width = 0.2;
     const double k2 = pi * pi * (m * m + n * n);
