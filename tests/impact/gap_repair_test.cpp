@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "impact/curve_checks.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/open_spots.h"
 
 namespace isopath {
 namespace {
@@ -20,7 +25,7 @@ TEST(gap_repair, leaves_a_curve_without_wide_gaps_as_it_is) {
   const std::vector<double> xs{1, 3, 5, 7, 9, 11, 13, 15, 17, 19};
   ImpactCurve curve = test::parallel_lines(plate.linker, xs, 20);
   const ImpactCurve before = curve;
-  EXPECT_EQ(close_wide_gaps(plate.linker, plate.normals, 2, curve, Progress::none()), 0);
+  EXPECT_EQ(close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = 2}), 0);
   ASSERT_EQ(curve.points.size(), before.points.size());
   for (std::size_t i = 0; i < curve.points.size(); ++i) EXPECT_TRUE(same(curve.points[i], before.points[i]));
 }
@@ -44,7 +49,7 @@ TEST(gap_repair, fills_in_for_a_missing_line) {
   const std::vector<double> xs{1, 3, 5, 7, 11, 13, 15, 17, 19};
   const ImpactCurve before = test::parallel_lines(plate.linker, xs, 20);
   ImpactCurve curve = before;
-  const int loops = close_wide_gaps(plate.linker, plate.normals, 2, curve, Progress::none());
+  const int loops = close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = 2});
   // The open strip is 4 wide: one pass more is needed, two at most.
   EXPECT_GE(loops, 1);
   EXPECT_LE(loops, 2);
@@ -73,10 +78,10 @@ TEST(gap_repair, goes_round_and_round_in_a_bare_patch) {
     }
   }
   ImpactCurve curve = before;
-  const int loops = close_wide_gaps(plate.linker, plate.normals, 2, curve, Progress::none());
+  const int loops = close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = 2});
   EXPECT_GE(loops, 2);
   expect_repaired(plate, 2, before, curve);
-  // as many covering stretches more as loops
+  // loops are reached over what is covered
   const auto stretches = [](const ImpactCurve& c) {
     int n = 0;
     for (std::size_t i = 1; i < c.points.size(); ++i) {
@@ -84,7 +89,7 @@ TEST(gap_repair, goes_round_and_round_in_a_bare_patch) {
     }
     return n;
   };
-  EXPECT_GE(stretches(curve), stretches(before) + loops);
+  EXPECT_GE(stretches(curve), stretches(before) + 2);
 }
 
 TEST(gap_repair, works_on_a_curved_surface) {
@@ -97,9 +102,85 @@ TEST(gap_repair, works_on_a_curved_surface) {
   test::append(curve, ring, MoveKind::cover);
   for (ImpactPoint& p : curve.points) p.normal = dome.normals.at(p.at);
   const ImpactCurve before = curve;
-  const int loops = close_wide_gaps(linker, dome.normals, 3, curve, Progress::none());
+  const int loops = close_wide_gaps(linker, dome.normals, curve, {.spacing = 3});
   EXPECT_GE(loops, 8);  // a quarter of a great circle is 31.4 long
   expect_repaired(dome, 3, before, curve);
+}
+
+/// Squares one inside the other, `spacing` apart, all around the middle of a plate of side 24.
+ImpactCurve nested_squares(const SurfaceLinker& linker, double spacing) {
+  ImpactCurve curve;
+  Vec3 end = Vec3::Zero();
+  for (double in = 0.5 * spacing; in < 12; in += spacing) {
+    const std::array<Vec3, 4> corner = {Vec3(in, in, 0), Vec3(24 - in, in, 0), Vec3(24 - in, 24 - in, 0),
+                                        Vec3(in, 24 - in, 0)};
+    if (!curve.points.empty()) test::append(curve, test::line(linker, end, corner[0]), MoveKind::link);
+    for (int i = 0; i < 4; ++i)
+      test::append(curve, test::line(linker, corner[i], corner[(i + 1) % 4]), MoveKind::cover);
+    end = corner[0];
+  }
+  return curve;
+}
+
+TEST(open_spots, lie_on_the_ridges_of_nested_squares_and_nowhere_else) {
+  const test::Plate plate{test::planar_grid(15, 15, 24, 24, {.jitter = 0.2})};
+  const double w = 2;
+  const ImpactCurve curve = nested_squares(plate.linker, w);
+  const CoverField cover = distance_from_cover(plate.mesh, curve, w, Progress::none());
+  const double limit = 0.52 * w;
+  const double resolution = 0.01 * w;
+  const std::vector<OpenSpot> spots = open_spots(cover.field, limit, resolution);
+  // on each of four diagonals one at the plate's corner and one between each two of the six squares
+  EXPECT_EQ(spots.size(), 4 * 6);
+  const double widest_inside = w / (1 + std::sin(std::numbers::pi / 4));  // 2 w / (1 + sin(α/2)) is the gap
+  const double widest_at_corner = 0.5 * w * std::numbers::sqrt2;
+  for (const OpenSpot& spot : spots) {
+    const SpotCell& top = spot.cells.front();
+    const double x = std::min(top.position.x(), 24 - top.position.x());
+    const double y = std::min(top.position.y(), 24 - top.position.y());
+    EXPECT_NEAR(x, y, 2 * top.radius);
+    EXPECT_NEAR(top.distance, x < 0.5 * w ? widest_at_corner : widest_inside, top.radius);
+    EXPECT_LE(top.radius, 10 * resolution);
+    for (const SpotCell& cell : spot.cells) {
+      EXPECT_GT(cell.distance, limit);
+      EXPECT_LE(cell.distance, top.distance);
+    }
+  }
+  const std::vector<char> none(plate.mesh.n_faces(), 0);
+  EXPECT_TRUE(open_spots(cover.field, limit, resolution, Progress::none(), none).empty());
+}
+
+TEST(gap_repair, draws_corners_out_no_farther_than_needed) {
+  const test::Plate plate{test::planar_grid(15, 15, 24, 24, {.jitter = 0.2})};
+  const double w = 2;
+  const ImpactCurve before = nested_squares(plate.linker, w);
+  ImpactCurve curve = before;
+  EXPECT_GE(close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = w}), 4 * 6);
+  test::expect_valid(plate.mesh, curve);
+  EXPECT_EQ(length_of(curve, MoveKind::link), length_of(before, MoveKind::link)) << "bumps cover, and need no links";
+  const CoverField cover = distance_from_cover(plate.mesh, curve, w, Progress::none());
+  EXPECT_TRUE(open_spots(cover.field, 0.5 * (widest_gap + 0.02) * w, 0.002 * w).empty());
+  // A tip d outside a corner covers the ridge when (w - d sin 45°) / (1 + sin 45°) = 0.51 w: d = 0.18 w, there and back
+  // no longer than 0.37 w; at the plate's corners, where all of √2/2 - 0.5 is missing, half a spacing and more.
+  const double added = length_of(curve, MoveKind::cover) - length_of(before, MoveKind::cover);
+  EXPECT_LE(added, 4 * (5 * 0.37 + 0.6) * w);
+  EXPECT_GE(added, 4 * 5 * 0.1 * w);
+}
+
+TEST(gap_repair, sees_with_each_round_what_the_whole_field_shows) {
+  // far from the source the distance from a part of the curve is not that from the whole one: only near its moves
+  const test::Plate plate{test::planar_grid(24, 24, 24, 24, {.jitter = 0.2})};
+  const double w = 2;
+  const ImpactCurve curve = nested_squares(plate.linker, w);
+  const CoverField whole = distance_from_cover(plate.mesh, curve, w, Progress::none());
+  const Vec3 place(1, 1, 0);
+  std::vector<char> near;
+  for (const ImpactPoint& p : curve.points) near.push_back((p.position - place).norm() < 2.5 * w ? 1 : 0);
+  const CoverField part = distance_from_part_of_cover(plate.mesh, curve, near, 2 * w, w, Progress::none());
+  for (Index v = 0; v < plate.mesh.n_vertices(); ++v) {
+    if ((plate.mesh.position(v) - place).norm() > 1.2 * w) continue;
+    EXPECT_NEAR(part.field.value_at_vertex(v), whole.field.value_at_vertex(v), 2 * cover_accuracy * w);
+  }
 }
 
 }  // namespace

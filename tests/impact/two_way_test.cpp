@@ -67,7 +67,7 @@ void expect_one_closed_curve(const TriangleMesh& mesh, const ImpactPlan& plan, d
   EXPECT_TRUE(is_closed(plan.curve));
   EXPECT_TRUE(plan.warnings.empty());
   const GapReport gap = measure_gap(mesh, plan.curve, spacing);
-  EXPECT_LE(gap.max, 1.15 * spacing);
+  EXPECT_LE(gap.max, 1.05 * spacing);
   EXPECT_GE(gap.covered_fraction, 0.998);
   EXPECT_LE(length_of(plan.curve, MoveKind::cover) * spacing / mesh.area(), most_length);
 }

@@ -38,7 +38,7 @@ TEST(ScallopPlan, LeavesTheCuspsThatAreAskedFor) {
   EXPECT_LT(result.length_ratio, 1.2);
   ASSERT_TRUE(result.scallop);
   // Cusps go with the square of the gap. Passes are put up to a few percent closer than asked for; where fronts meet,
-  // gaps of 1.15 spacings are let be.
+  // gaps of 1.03 spacings are let be, and what bumps leave is a little wider.
   EXPECT_LT(result.scallop->measured.p99, 1.15 * 1.15 * job.scallop);
   EXPECT_GT(result.scallop->measured.mean, 0.75 * job.scallop);
   EXPECT_LT(result.scallop->measured.mean, 1.02 * job.scallop);

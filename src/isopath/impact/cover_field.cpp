@@ -5,17 +5,25 @@
 
 namespace isopath {
 
-CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
-                               const IntrinsicGeometry* metric) {
-  SourceSet source;
-  std::vector<Index> curve_point;
+namespace {
+
+struct CoverSource {
+  SourceSet elements;
+  std::vector<Index> curve_point;  // where the element, or the segment before it, starts
+};
+
+/// The covering moves between points that `take` accepts.
+template <class Take>
+CoverSource cover_source(const TriangleMesh& mesh, const ImpactCurve& curve, const Take& take) {
+  CoverSource source;
   std::vector<SurfacePoint> stretch;
   Index first = 0;  // of the stretch, in the curve
   const auto flush = [&] {
     if (stretch.size() > 1) {
-      source.add_polyline(mesh, stretch, false);
+      source.elements.add_polyline(mesh, stretch, false);
       // elements alternate: point, segment, point, …
-      for (Index k = 0; curve_point.size() < source.elements().size(); ++k) curve_point.push_back(first + k / 2);
+      for (Index k = 0; source.curve_point.size() < source.elements.elements().size(); ++k)
+        source.curve_point.push_back(first + k / 2);
     }
     stretch.clear();
   };
@@ -23,16 +31,35 @@ CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curv
     const ImpactPoint& point = curve.points[i];
     if (point.kind != MoveKind::cover || (!stretch.empty() && common_face(mesh, stretch.back(), point.at) == no_index))
       flush();
-    if (!point.at.valid()) continue;
+    if (!point.at.valid() || !take(i)) {
+      flush();
+      continue;
+    }
     if (stretch.empty()) first = i;
     stretch.push_back(point.at);
   }
   flush();
-  if (source.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing");
+  if (source.elements.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing");
+  return source;
+}
+
+}  // namespace
+
+CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
+                               const IntrinsicGeometry* metric) {
+  CoverSource source = cover_source(mesh, curve, [](Index) { return true; });
   const ExactFieldOptions options{.accuracy = cover_accuracy * spacing};
-  return {metric ? ExactField::compute(mesh, *metric, source, options, progress)
-                 : ExactField::compute(mesh, source, options, progress),
-          std::move(curve_point)};
+  return {metric ? ExactField::compute(mesh, *metric, source.elements, options, progress)
+                 : ExactField::compute(mesh, source.elements, options, progress),
+          std::move(source.curve_point)};
+}
+
+CoverField distance_from_part_of_cover(const TriangleMesh& mesh, const ImpactCurve& curve,
+                                       const std::vector<char>& marked, double stop_distance, double spacing,
+                                       Progress& progress) {
+  CoverSource source = cover_source(mesh, curve, [&](Index i) { return marked[i] != 0; });
+  const ExactFieldOptions options{.stop_distance = stop_distance, .accuracy = cover_accuracy * spacing};
+  return {ExactField::compute(mesh, source.elements, options, progress), std::move(source.curve_point)};
 }
 
 }  // namespace isopath

@@ -21,5 +21,9 @@ inline constexpr double cover_accuracy = 1e-4;
 /// Error(cancelled) on request.
 CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
                                const IntrinsicGeometry* metric = nullptr);
+/// The distance in space from the moves between marked points alone, as far as `stop_distance`.
+CoverField distance_from_part_of_cover(const TriangleMesh& mesh, const ImpactCurve& curve,
+                                       const std::vector<char>& marked, double stop_distance, double spacing,
+                                       Progress& progress);
 
 }  // namespace isopath

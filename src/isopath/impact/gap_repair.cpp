@@ -1,35 +1,47 @@
 #include "isopath/impact/gap_repair.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "isopath/contour/contour_graph.h"
-#include "isopath/field/value_range.h"
+#include "isopath/core/quiet_progress.h"
+#include "isopath/impact/bump.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/open_spots.h"
 #include "isopath/impact/passes.h"
+#include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
 namespace {
 
-/// A way out of the curve and back, starting and ending at its foot between point `after` of the curve and the next
-/// one.
-struct Detour {
-  Index after = 0;
-  std::vector<ImpactPoint> points;
-};
+/// Loops go along levels of the distance from the cover: the first one so far out, in spacings, then half a spacing on.
+constexpr double first_loop = 0.575;
+/// Bumps leave nothing as far from the curve as what counts as wide, by so many spacings.
+constexpr double bump_margin = 0.005;
+/// No place is overlooked that is farther from the curve than half the widest gap and this, in spacings.
+constexpr double resolution = 0.01;
+/// What a bump leaves open beside it is closed in the next round.
+constexpr int most_rounds = 5;
 
+/// Ways round wide open places.
 class DetourBuilder {
  public:
   DetourBuilder(const TriangleMesh& mesh, const SmoothNormals& normals, const ImpactCurve& curve,
                 const CoverField& cover)
       : mesh_(mesh), normals_(normals), curve_(curve), cover_(cover) {}
 
-  Detour around(const Contour& contour) const {
+  /// Out of the curve along the shortest way, round the contour, and back.
+  Replacement around(const Contour& contour) const {
     const SurfacePoint& start = contour.points.front();
     std::vector<SurfacePoint> way_back = cover_.field.shortest_path(start);
-    Detour detour;
+    Replacement detour;
     // asked at the foot: where two ways from the start are equally long, its own nearest root may be the other one's
-    detour.after = cover_.curve_point[cover_.field.nearest(way_back.back()).root];
-    const Index piece = curve_.points[detour.after].piece;
+    detour.first = cover_.curve_point[cover_.field.nearest(way_back.back()).root];
+    detour.last = detour.first + 1;
+    const Index piece = curve_.points[detour.first].piece;
     const auto add = [&](const SurfacePoint& at, MoveKind kind) {
       detour.points.push_back({kind, at, position_of(mesh_, at), normals_.at(at), piece});
     };
@@ -73,53 +85,183 @@ class BoundedField final : public SurfaceFunction {
   std::vector<char> may_reach_;
 };
 
-/// The contours that loops go along: one level after the other, a spacing apart, from where gaps begin to be too wide;
-/// and half a spacing above the last one where the open place goes on beyond.
-std::vector<Contour> open_places(const TriangleMesh& mesh, const ExactField& field, double spacing,
-                                 Progress& progress) {
+/// The contours that loops go along in the marked faces: one level after the other, a spacing apart, and half a spacing
+/// above the last one where the open place goes on beyond.
+std::vector<Contour> loops_in(const TriangleMesh& mesh, const ExactField& field, double spacing,
+                              std::vector<char> marked, double farthest, Progress& progress) {
   std::vector<double> levels;
-  std::vector<char> wide;  // the faces that the lowest level may lie in
-  for (double level = 0.5 * widest_gap * spacing;; level += 0.5 * spacing) {
-    std::vector<char> may_reach = faces_that_may_reach(mesh, field, level, progress);
-    if (std::find(may_reach.begin(), may_reach.end(), 1) == may_reach.end()) break;
-    if (levels.empty()) wide = std::move(may_reach);
-    levels.push_back(level);
-  }
+  for (double level = first_loop * spacing; level < farthest; level += 0.5 * spacing) levels.push_back(level);
   std::vector<Contour> kept;
   if (levels.empty()) return kept;
   ContourSet set =
-      contour_set(mesh, BoundedField(field, std::move(wide)), levels, {.chord_tolerance = 1e-3 * spacing}, progress);
+      contour_set(mesh, BoundedField(field, marked), levels, {.chord_tolerance = 1e-3 * spacing}, progress);
   const std::vector<char> keep = mark_passes(set, levels);
   for (std::size_t k = 0; k < keep.size(); ++k) {
-    if (keep[k]) kept.push_back(std::move(set.contours[k]));
+    const auto& points = set.contours[k].points;
+    if (keep[k] &&
+        std::any_of(points.begin(), points.end(), [&](const SurfacePoint& p) { return marked[p.face] != 0; }))
+      kept.push_back(std::move(set.contours[k]));
   }
   return kept;
 }
 
+/// Puts replacements in; of those that overlap only the first. Returns how many were.
+int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements) {
+  const double tolerance = mesh.tolerance().length;
+  std::stable_sort(replacements.begin(), replacements.end(), [](const Replacement& a, const Replacement& b) {
+    return std::tie(a.first, a.last) < std::tie(b.first, b.last);
+  });
+  std::vector<ImpactPoint> points;
+  int count = 0;
+  Index next = 0;  // the first point not dealt with
+  for (const Replacement& r : replacements) {
+    if (r.first + 1 < next) continue;
+    points.insert(points.end(), curve.points.begin() + next, curve.points.begin() + r.first + 1);
+    points.insert(points.end(), r.points.begin(), r.points.end());
+    next = std::max(r.first + 1, r.last);
+    ++count;
+  }
+  points.insert(points.end(), curve.points.begin() + next, curve.points.end());
+  curve.points.clear();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool inside = !curve.points.empty() && i + 1 < points.size() && points[i].kind != MoveKind::lift &&
+                        points[i + 1].kind != MoveKind::lift;
+    // a point that says nothing new goes, unless the way needs it to change faces
+    const bool idle = inside && (points[i].position - curve.points.back().position).norm() <= tolerance &&
+                      curve.points.back().at.valid() &&
+                      common_face(mesh, curve.points.back().at, points[i + 1].at) != no_index;
+    if (!idle) curve.points.push_back(points[i]);
+  }
+  return count;
+}
+
+/// Places in a grid of cells, to ask what is near.
+class NearPlaces {
+ public:
+  NearPlaces(const std::vector<Replacement>& replacements, double reach) : reach_(reach) {
+    for (const Replacement& r : replacements) {
+      for (const ImpactPoint& point : r.points) places_.emplace_back(cell_of(point.position), point.position);
+    }
+    std::sort(places_.begin(), places_.end(), before);
+  }
+
+  /// Whether one of them is within `radius`, which is at most the reach.
+  bool any_near(const Vec3& p, double radius) const {
+    const Cell at = cell_of(p);
+    for (Index x = at[0] - 1; x <= at[0] + 1; ++x) {
+      for (Index y = at[1] - 1; y <= at[1] + 1; ++y) {
+        const Cell last{x, y, at[2] + 1};
+        for (auto e = std::lower_bound(places_.begin(), places_.end(), Place{{x, y, at[2] - 1}, Vec3::Zero()}, before);
+             e != places_.end() && e->first <= last; ++e) {
+          if ((e->second - p).norm() <= radius) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  using Cell = std::array<Index, 3>;
+  using Place = std::pair<Cell, Vec3>;
+  static bool before(const Place& a, const Place& b) { return a.first < b.first; }
+  Cell cell_of(const Vec3& p) const {
+    return {static_cast<Index>(std::floor(p.x() / reach_)), static_cast<Index>(std::floor(p.y() / reach_)),
+            static_cast<Index>(std::floor(p.z() / reach_))};
+  }
+
+  double reach_;
+  std::vector<Place> places_;
+};
+
+class GapCloser {
+ public:
+  GapCloser(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve, const GapLimits& limits,
+            Progress& progress)
+      : linker_(linker), mesh_(linker.mesh()), normals_(normals), curve_(curve), limits_(limits), progress_(progress) {
+    double longest = 0;
+    for (Index e = 0; e < mesh_.n_edges(); ++e) longest = std::max(longest, mesh_.edge_length(e));
+    may_look_at_parts_ = !limits.metric && longest <= limits.spacing;
+  }
+
+  int run() {
+    int count = 0;
+    std::vector<Replacement> changes;
+    bool loops = true;
+    for (int round = 0; round < most_rounds; ++round) {
+      const auto [cover, spots] = loops || !may_look_at_parts_ ? look_everywhere() : look_beside(changes);
+      changes = bumps_and_loops(cover, spots, loops);
+      if (changes.empty()) break;
+      count += replace(mesh_, curve_, changes);
+    }
+    return count;
+  }
+
+ private:
+  struct View {
+    CoverField cover;
+    std::vector<OpenSpot> spots;
+  };
+
+  View look_everywhere() {
+    CoverField cover = distance_from_cover(mesh_, curve_, limits_.spacing, progress_, limits_.metric);
+    std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * limits_.spacing, progress_);
+    return {std::move(cover), std::move(spots)};
+  }
+
+  /// Bumps change gaps only beside them, and what lies two spacings away has no part in those.
+  View look_beside(const std::vector<Replacement>& changes) {
+    const double w = limits_.spacing;
+    const NearPlaces changed(changes, 2.5 * w);
+    std::vector<char> moves;
+    for (const ImpactPoint& point : curve_.points) moves.push_back(changed.any_near(point.position, 2.5 * w) ? 1 : 0);
+    std::vector<char> faces;
+    for (Index f = 0; f < mesh_.n_faces(); ++f)
+      faces.push_back(changed.any_near(position_of(mesh_, {f, Vec3::Constant(1.0 / 3)}), 1.2 * w) ? 1 : 0);
+    QuietProgress quiet(progress_);
+    CoverField cover = distance_from_part_of_cover(mesh_, curve_, moves, 2 * w, w, quiet);
+    std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * w, progress_, faces);
+    return {std::move(cover), std::move(spots)};
+  }
+
+  double limit() const { return 0.5 * limits_.widest * limits_.spacing; }
+
+  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, bool& loops) {
+    const double w = limits_.spacing;
+    std::vector<Replacement> replacements;
+    std::vector<char> wide(mesh_.n_faces(), 0);
+    double farthest = 0;
+    for (const OpenSpot& spot : spots) {
+      progress_.checkpoint();
+      if (auto bump = bump_into(linker_, normals_, curve_, cover, spot, limit() - bump_margin * w, w)) {
+        replacements.push_back(*std::move(bump));
+        continue;
+      }
+      farthest = std::max(farthest, spot.cells.front().distance);
+      for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
+    }
+    loops = farthest > 0;
+    const DetourBuilder builder(mesh_, normals_, curve_, cover);
+    for (const Contour& contour : loops_in(mesh_, cover.field, w, std::move(wide), farthest, progress_)) {
+      progress_.checkpoint();
+      replacements.push_back(builder.around(contour));
+    }
+    return replacements;
+  }
+
+  const SurfaceLinker& linker_;
+  const TriangleMesh& mesh_;
+  const SmoothNormals& normals_;
+  ImpactCurve& curve_;
+  const GapLimits& limits_;
+  Progress& progress_;
+  bool may_look_at_parts_ = false;
+};
+
 }  // namespace
 
-int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, double spacing, ImpactCurve& curve,
-                    Progress& progress, const IntrinsicGeometry* metric) {
-  const TriangleMesh& mesh = linker.mesh();
-  const CoverField cover = distance_from_cover(mesh, curve, spacing, progress, metric);
-  const DetourBuilder builder(mesh, normals, curve, cover);
-  std::vector<Detour> detours;
-  for (const Contour& contour : open_places(mesh, cover.field, spacing, progress)) {
-    progress.checkpoint();
-    detours.push_back(builder.around(contour));
-  }
-  if (detours.empty()) return 0;
-  std::stable_sort(detours.begin(), detours.end(), [](const Detour& a, const Detour& b) { return a.after < b.after; });
-  ImpactCurve whole;
-  std::size_t next = 0;
-  for (Index i = 0; i < static_cast<Index>(curve.points.size()); ++i) {
-    whole.points.push_back(curve.points[i]);
-    for (; next < detours.size() && detours[next].after == i; ++next) {
-      whole.points.insert(whole.points.end(), detours[next].points.begin(), detours[next].points.end());
-    }
-  }
-  curve = std::move(whole);
-  return static_cast<int>(detours.size());
+int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                    const GapLimits& limits, Progress& progress) {
+  return GapCloser(linker, normals, curve, limits, progress).run();
 }
 
 }  // namespace isopath

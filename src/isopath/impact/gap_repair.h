@@ -8,14 +8,22 @@
 
 namespace isopath {
 
-/// Gaps wider than this, in spacings, are closed by detours.
-inline constexpr double widest_gap = 1.15;
+/// What counts as a wide gap where one curve is to cover everything, in spacings.
+inline constexpr double widest_gap = 1.03;
+/// The same where passes are to stay what they are: fronts that meet at a right angle leave less.
+inline constexpr double widest_corner_gap = 1.15;
+
+struct GapLimits {
+  double spacing = 0;                         ///< of the passes, in the lengths of the metric
+  double widest = widest_gap;                 ///< gaps wider than this are closed, in spacings
+  const IntrinsicGeometry* metric = nullptr;  ///< null for lengths in space
+};
 
 /// Closes what passes leave open where fronts meet: at saddles of the field, in sharp corners, inside the last pass
-/// (paper ch. 9.3). Around every place whose gap exceeds `widest_gap` the curve makes a loop: it leaves along the
-/// shortest way, goes round, and comes back. In a metric, distances and the spacing are lengths in it. Returns the
-/// number of loops.
-int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, double spacing, ImpactCurve& curve,
-                    Progress& progress, const IntrinsicGeometry* metric = nullptr);
+/// (paper ch. 9.3). Towards a small open spot the curve makes a bump; around a wide one it makes a loop: it leaves
+/// along the shortest way, goes round, and comes back. What is left or opened beside them is closed in the next of up
+/// to five rounds. Returns the number of bumps and loops.
+int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                    const GapLimits& limits, Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -20,7 +20,7 @@ namespace {
 constexpr double longest_link_in_spacings = 8;
 
 /// Where two fronts meet at a right angle, the gap along their ridge is 2 / (1 + sin 45°) = 1.17 spacings; passes this
-/// much closer keep it within `widest_gap`, so that ordinary corners need no detours.
+/// much closer keep it within `widest_corner_gap`, so that ordinary corners need no detours.
 constexpr double pass_allowance = 0.98;
 
 std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
@@ -91,7 +91,9 @@ class Planner {
     }
     plan.curve = assembly.take();
     progress_.stage("wide gaps");
-    close_wide_gaps(linker_, normals_, options_.spacing, plan.curve, progress_, options_.metric);
+    const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
+    close_wide_gaps(linker_, normals_, plan.curve,
+                    {options_.spacing, as_they_are ? widest_corner_gap : widest_gap, options_.metric}, progress_);
     plan.contours = std::move(passes_.contours);
     return plan;
   }

@@ -1,0 +1,124 @@
+#include "isopath/impact/open_spots.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "isopath/field/face_part.h"
+#include "isopath/mesh/disjoint_sets.h"
+
+namespace isopath {
+namespace {
+
+constexpr double largest_cell_over_resolution = 10;
+/// Centres of neighbouring cells are at most this many of their radii apart, together.
+constexpr double reach_of_neighbours = 1.6;
+
+class SpotSearch {
+ public:
+  SpotSearch(const ExactField& field, double limit, double resolution)
+      : field_(field), mesh_(field.mesh()), limit_(limit), resolution_(resolution) {}
+
+  /// What may be farther than the limit is halved until it is small, or certainly farther and small enough.
+  void search(Index face, std::vector<SpotCell>& cells) const {
+    for (const Index v : mesh_.triangle(face)) {
+      if (!std::isfinite(field_.value_at_vertex(v))) return;
+    }
+    const IntrinsicGeometry& geometry = field_.geometry();
+    const Vec2 apex = geometry.apex(3 * face);
+    const FaceCorners corners = {Vec3::Zero(), Vec3(geometry.length(3 * face), 0, 0), Vec3(apex.x(), apex.y(), 0)};
+    std::vector<FacePart> parts{FacePart::whole(face)};
+    while (!parts.empty()) {
+      const FacePart part = parts.back();
+      parts.pop_back();
+      const SurfacePoint centre{face, part.centre()};
+      const double distance = field_.value(centre);
+      const double radius = radius_of(corners, part);
+      if (distance + radius <= limit_) continue;
+      const bool all_open = distance - radius > limit_;
+      if (radius > (all_open ? largest_cell_over_resolution : 1.0) * resolution_) {
+        halve(corners, part, parts);
+      } else if (distance > limit_) {
+        cells.push_back({centre, position_of(mesh_, centre), distance, radius});
+      }
+    }
+  }
+
+ private:
+  const ExactField& field_;
+  const TriangleMesh& mesh_;
+  double limit_;
+  double resolution_;
+};
+
+using GridCell = std::array<Index, 3>;
+
+/// Cells whose parts may touch belong to one spot.
+std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cells) {
+  double size = 0;
+  for (const SpotCell& cell : cells) size = std::max(size, 2 * reach_of_neighbours * cell.radius);
+  const auto grid_cell = [&](const Vec3& p) {
+    return GridCell{static_cast<Index>(std::floor(p.x() / size)), static_cast<Index>(std::floor(p.y() / size)),
+                    static_cast<Index>(std::floor(p.z() / size))};
+  };
+  std::vector<std::pair<GridCell, Index>> grid;
+  for (std::size_t i = 0; i < cells.size(); ++i) grid.emplace_back(grid_cell(cells[i].position), static_cast<Index>(i));
+  std::sort(grid.begin(), grid.end());
+  DisjointSets sets(cells.size());
+  for (const auto& [at, i] : grid) {
+    for (Index x = at[0] - 1; x <= at[0] + 1; ++x) {
+      for (Index y = at[1] - 1; y <= at[1] + 1; ++y) {
+        const std::pair<GridCell, Index> first{{x, y, at[2] - 1}, 0};
+        for (auto e = std::lower_bound(grid.begin(), grid.end(), first);
+             e != grid.end() && e->first <= GridCell{x, y, at[2] + 1}; ++e) {
+          const SpotCell& a = cells[i];
+          const SpotCell& b = cells[e->second];
+          const bool near = (a.position - b.position).norm() <= reach_of_neighbours * (a.radius + b.radius);
+          // not from one side of a thin wall to the other
+          if (near && mesh.face_normal(a.at.face).dot(mesh.face_normal(b.at.face)) > 0) sets.join(i, e->second);
+        }
+      }
+    }
+  }
+  std::vector<OpenSpot> spots;
+  std::vector<Index> number(cells.size(), no_index);
+  for (Index i = 0; i < static_cast<Index>(cells.size()); ++i) {
+    Index& k = number[sets.root(i)];
+    if (k == no_index) {
+      k = static_cast<Index>(spots.size());
+      spots.emplace_back();
+    }
+    spots[k].cells.push_back(std::move(cells[i]));
+  }
+  for (OpenSpot& spot : spots) {
+    const auto top = std::max_element(spot.cells.begin(), spot.cells.end(),
+                                      [](const SpotCell& a, const SpotCell& b) { return a.distance < b.distance; });
+    std::iter_swap(spot.cells.begin(), top);
+  }
+  return spots;
+}
+
+}  // namespace
+
+std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution, const Progress& progress,
+                                 const std::vector<char>& marked) {
+  const Index n = field.mesh().n_faces();
+  constexpr Index chunk = 64;
+  const SpotSearch spot_search(field, limit, resolution);
+  std::vector<std::vector<SpotCell>> found((n + chunk - 1) / chunk);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+    const auto first = static_cast<Index>(k) * chunk;
+    for (Index f = first; f < std::min(n, first + chunk); ++f) {
+      progress.checkpoint();
+      if (marked.empty() || marked[f]) spot_search.search(f, found[k]);
+    }
+  });
+  std::vector<SpotCell> cells;
+  for (const auto& part : found) cells.insert(cells.end(), part.begin(), part.end());
+  return group(field.mesh(), std::move(cells));
+}
+
+}  // namespace isopath

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/field/exact_field.h"
+
+namespace isopath {
+
+/// A small part of the surface, known by its centre.
+struct SpotCell {
+  SurfacePoint at;
+  Vec3 position = Vec3::Zero();
+  double distance = 0;  ///< of the centre from the source, in the field's lengths
+  double radius = 0;    ///< nothing in it is farther from the centre
+};
+
+/// A connected part of the surface that is farther from the source than a limit.
+struct OpenSpot {
+  std::vector<SpotCell> cells;  ///< the one with the largest distance first
+};
+
+/// The parts of the surface that are more than `limit` away from the source. Branch and bound over the faces: as
+/// distances have slope 1, no place is missed that is more than `resolution` farther than the limit. Cells are as
+/// small as that at the rim of a spot, and up to ten times as large inside it. In an order that depends on nothing but
+/// the field; unreached faces are left out, and where `marked` is not empty those that it does not mark. Throws
+/// Error(cancelled) on request.
+std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution,
+                                 const Progress& progress = Progress::none(), const std::vector<char>& marked = {});
+
+}  // namespace isopath
