@@ -17,6 +17,9 @@ namespace {
 constexpr double margin_of_size = 1e-14;
 /// So few items are not worth waking another thread for.
 constexpr std::size_t worth_sharing = 32;
+constexpr std::size_t vertices_at_a_time = 16;
+/// Items are fetched into the cache this many places before their turn.
+constexpr std::size_t ahead = 4;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
 constexpr double bucket_width = 0.5;
 /// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
@@ -32,11 +35,11 @@ double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) 
   return sum / std::max<Index>(mesh.n_edges(), 1);
 }
 
-/// Calls work(first, past) for parts of [0, n), at the same time.
+/// Calls work(first, past) for parts of [0, n), at the same time; at_least of them are worth it.
 template <class Work>
-void share(std::size_t n, Work&& work) {
-  if (n < worth_sharing) return work(0, n);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, worth_sharing / 2),
+void share(std::size_t n, std::size_t at_least, Work&& work) {
+  if (n < at_least) return work(0, n);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, at_least / 2),
                     [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
 }
 
@@ -86,29 +89,27 @@ std::size_t ListPropagation::window_bytes() const {
   return bytes;
 }
 
-Index ListPropagation::waiting_place(Index leaving) const {
-  const Index twin = sites_[leaving].twin;
-  return twin == no_index && options_.retain ? leaving : twin;
-}
-
 void ListPropagation::start(const SourceFronts& fronts) {
   WindowBlocks& blocks = workshops_.local().blocks;
   for (const SourceFronts::Vertex& source : fronts.vertices) {
     source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
     source_arcs_.push_back(source.blocked);
-    offer_vertex(source.vertex, 0, source.root, {mesh_.outgoing(source.vertex)});
+    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex)}});
   }
   for (const SourceFronts::Front& front : fronts.fronts) {
     const Index h = front.halfedge;
     const Window& w = front.window;
     const double length = geometry_.length(h);
-    // The fronts arrive from inside the half-edge's face: y is positive, or negative in a direction.
-    const auto turn_of = [](const Vec2& back) { return std::atan2(std::max(back.y(), 0.0), back.x()); };
-    if (w.begin == 0) offer_vertex(mesh_.from(h), w.distance(0), w.root, {h, turn_of(-w.direction(0))});
+    // The fronts arrive from inside the half-edge's face, to which the way back leads.
+    const auto back_at = [&](double x) { return Vec2(-w.direction(x).x(), std::max(-w.direction(x).y(), 0.0)); };
+    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, 0, back_at(0)}});
     if (w.end == length) {
-      const Index outgoing = TriangleMesh::next(h);
-      const double turn = geometry_.angle_at_tail(outgoing) - turn_of(Vec2(1, -1).cwiseProduct(w.direction(length)));
-      offer_vertex(mesh_.to(h), w.distance(length), w.root, {outgoing, turn});
+      const Vec2 outgoing = geometry_.apex(h) - Vec2(length, 0);
+      const Vec2 back = back_at(length);
+      offer_vertex({mesh_.to(h),
+                    w.root,
+                    w.distance(length),
+                    {TriangleMesh::next(h), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}});
     }
     if (w.filler && options_.retain) {
       const Index edge = mesh_.edge_of(h);
@@ -136,17 +137,18 @@ void ListPropagation::push_halfedge(Index halfedge, double least) {
   halfedges_[bucket].push_back(halfedge);
 }
 
-void ListPropagation::offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival) {
-  distance = std::max(distance, 0.0);
-  if (!(distance < states_[vertex].distance)) return;
-  states_[vertex].distance = distance;
-  states_[vertex].root = root;
-  states_[vertex].arrival = arrival;
+void ListPropagation::offer_vertex(const Offer& offer) {
+  VertexState& state = states_[offer.vertex];
+  const double distance = std::max(offer.distance, 0.0);
+  if (!(distance < state.distance)) return;
+  state.distance = distance;
+  state.root = offer.root;
+  state.arrival = offer.arrival;
   const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
-  if (bucket >= states_[vertex].bucket) return;
-  states_[vertex].bucket = bucket;
+  if (bucket >= state.bucket) return;
+  state.bucket = bucket;
   if (bucket >= static_cast<Index>(vertices_.size())) vertices_.resize(bucket + 1);
-  vertices_[bucket].push_back(vertex);
+  vertices_[bucket].push_back(offer.vertex);
 }
 
 void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block) {
@@ -155,43 +157,46 @@ void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block
   first = block;
 }
 
-void ListPropagation::relax_edges(Index vertex) {
-  const VertexState from = states_[vertex];
+void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
+  const VertexState& from = states_[vertex];
+  const auto offer = [&](Index to, double length, Index back, const Vec2& direction) {
+    const double there = from.distance + length;
+    if (there < states_[to].distance)
+      handed.offers.push_back({to, from.root, there, {back, from.arrival.error, direction}});
+  };
   const Index first = mesh_.outgoing(vertex);
   Index h = first;
   do {
-    const Site& site = sites_[h];
     const Index next = TriangleMesh::next(h);
-    const Index to = sites_[next].tail;
-    const double there = from.distance + site.length;
-    if (there < states_[to].distance) {
-      const double error = from.arrival.error;
-      offer_vertex(
-          to, there, from.root,
-          site.twin != no_index ? Arrival{site.twin, 0, error} : Arrival{next, geometry_.angle_at_tail(next), error});
+    const Index twin = mesh_.twin(h);
+    if (twin != no_index) {
+      offer(mesh_.from(next), geometry_.length(h), twin, Vec2::UnitX());
+    } else {
+      offer(mesh_.from(next), geometry_.length(h), next, geometry_.apex(next));
     }
     const Index previous = TriangleMesh::prev(h);
-    h = sites_[previous].twin;
-    if (h == no_index) {  // the boundary edge that closes the fan
-      offer_vertex(sites_[previous].tail, from.distance + sites_[previous].length, from.root,
-                   {previous, 0, from.arrival.error});
-    }
+    h = mesh_.twin(previous);
+    if (h == no_index)  // the boundary edge that closes the fan
+      offer(mesh_.from(previous), geometry_.length(previous), previous, Vec2::UnitX());
   } while (h != no_index && h != first);
 }
 
-double ListPropagation::arrival_angle(Index vertex) const {
-  double sum = states_[vertex].arrival.turn;
-  for (Index h = mesh_.outgoing(vertex); h != states_[vertex].arrival.halfedge; h = mesh_.next_outgoing(h))
-    sum += geometry_.angle_at_tail(h);
-  return sum;
-}
-
-void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
+void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed) {
   const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
   if (!is_source && !states_[vertex].may_bend) return;
+  Index first = mesh_.outgoing(vertex);
   BlockedArc behind;
-  if (!is_source) behind = {arrival_angle(vertex), std::numbers::pi - angle_slack};
+  if (!is_source) {
+    const Arrival& arrival = states_[vertex].arrival;
+    behind = {std::atan2(std::max(arrival.back.y(), 0.0), arrival.back.x()), std::numbers::pi - angle_slack};
+    if (mesh_.is_boundary_vertex(vertex)) {
+      for (Index h = first; h != arrival.halfedge; h = mesh_.next_outgoing(h))
+        behind.angle += geometry_.angle_at_tail(h);
+    } else {
+      first = arrival.halfedge;
+    }
+  }
   const std::span<const BlockedArc> blocked =
       is_source ? std::span<const BlockedArc>(source_arcs_[source_at_[vertex]]) : std::span(&behind, 1);
   if (options_.retain) {
@@ -201,27 +206,30 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop) {
       h = mesh_.next_outgoing(h);
     } while (h != no_index && h != mesh_.outgoing(vertex));
   }
-  for_each_free_arc(mesh_, geometry_, vertex, total, blocked, [&](Index outgoing, double low, double high, bool cut) {
-    if (options_.retain) fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
-    const Index opposite = TriangleMesh::next(outgoing);
-    const Index place = waiting_place(opposite);
-    if (place == no_index) return;
-    const FanInterval interval = fan_interval(geometry_, outgoing, low, cut ? high : infinity);
-    const double length = geometry_.length(opposite);
-    if (!(interval.begin < interval.end)) return;
-    Window window;
-    window.begin = length - interval.end;
-    window.end = length - interval.begin;
-    window.source = Vec2(length, 0) - geometry_.apex(opposite);
-    window.offset = states_[vertex].distance;
-    window.root = states_[vertex].root;
-    window.error = states_[vertex].arrival.error;
-    WindowBlock* block = workshop.blocks.take(1);
-    workshop.blocks.arrays(block).set(0, window);
-    block->size = 1;
-    block->least = window.min_distance();
-    put_down(place, from_corner, block);
-  });
+  for_each_free_arc(mesh_, geometry_, vertex, first, total, blocked,
+                    [&](Index outgoing, double low, double high, bool cut) {
+                      if (options_.retain)
+                        fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
+                      const Index opposite = TriangleMesh::next(outgoing);
+                      const Index place = waiting_place(opposite);
+                      if (place == no_index) return;
+                      const FanInterval interval = fan_interval(geometry_, outgoing, low, cut ? high : infinity);
+                      const double length = geometry_.length(opposite);
+                      if (!(interval.begin < interval.end)) return;
+                      Window window;
+                      window.begin = length - interval.end;
+                      window.end = length - interval.begin;
+                      window.source = Vec2(length, 0) - geometry_.apex(opposite);
+                      window.offset = states_[vertex].distance;
+                      window.root = states_[vertex].root;
+                      window.error = states_[vertex].arrival.error;
+                      WindowBlock* block = workshop.blocks.take(1);
+                      workshop.blocks.arrays(block).set(0, window);
+                      block->size = 1;
+                      block->least = window.min_distance();
+                      put_down(place, from_corner, block);
+                      handed.fans.emplace_back(place, block->least);
+                    });
 }
 
 void ListPropagation::take_lists(Index halfedge, Crossing& crossing) {
@@ -240,8 +248,8 @@ WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
 ListPropagation::KeptList* ListPropagation::Workshop::keep(const WindowArrays& windows, std::size_t n) {
   constexpr std::size_t header = sizeof(KeptList) / sizeof(double);
   const std::size_t needed = header + WindowArrays::tagged_count * n;
-  if (left < needed) {
-    left = std::max(kept_chunk, needed);
+  if (left < needed + WindowBlock::lanes) {
+    left = std::max(kept_chunk, needed + WindowBlock::lanes);
     kept.push_back(std::make_unique_for_overwrite<double[]>(left));
     fresh = kept.back().get();
   }
@@ -263,33 +271,47 @@ WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std
       n += static_cast<std::size_t>(block->size);
     }
   }
-  owner = nullptr;
-  if (blocks.size() == 1) {
-    owner = blocks.front();
-    return workshop.blocks.arrays(owner);
-  }
+  owner = blocks.size() == 1 ? blocks.front() : nullptr;
+  if (owner != nullptr) return workshop.blocks.arrays(owner);
   WindowArrays gathered = workshop.scratch(0, n);
   std::size_t so_far = 0;
-  int which = 0;
-  const bool few = blocks.size() <= few_lists;
-  for (WindowBlock* block : blocks) {
-    const auto size = static_cast<std::size_t>(block->size);
-    const WindowArrays windows = workshop.blocks.arrays(block);
-    if (few && so_far > 0) {
-      which = 1 - which;
-      const WindowArrays to = workshop.scratch(which, n);
-      merge_lists(gathered, so_far, windows, size, to);
+  const auto size_of = [&](std::size_t k) { return static_cast<std::size_t>(blocks[k]->size); };
+  if (blocks.size() <= few_lists) {
+    gathered = workshop.blocks.arrays(blocks[0]);
+    so_far = size_of(0);
+    for (std::size_t k = 1; k < blocks.size(); ++k) {
+      const WindowArrays to = workshop.scratch(static_cast<int>(k % 2), n);
+      merge_lists(gathered, so_far, workshop.blocks.arrays(blocks[k]), size_of(k), to);
       gathered = to;
-    } else {
-      windows.copy(size, gathered + so_far);
+      so_far += size_of(k);
     }
-    so_far += size;
-    workshop.blocks.give_back(block);
+  } else {
+    for (std::size_t k = 0; k < blocks.size(); so_far += size_of(k), ++k)
+      workshop.blocks.arrays(blocks[k]).copy(size_of(k), gathered + so_far);
+    const WindowArrays sorted = workshop.scratch(1, n);
+    sort_list(gathered, n, sorted);
+    gathered = sorted;
   }
-  if (few) return gathered;
-  const WindowArrays sorted = workshop.scratch(1, n);
-  sort_list(gathered, n, sorted);
-  return sorted;
+  for (WindowBlock* block : blocks) workshop.blocks.give_back(block);
+  return gathered;
+}
+
+void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Workshop& workshop) {
+  const Site& site = sites_[h];
+  const bool leaves_surface = site.twin == no_index;  // see waiting_place
+  const Index next = TriangleMesh::next(h);
+  const Index tail = sites_[leaves_surface ? next : h].tail;
+  const Index head = sites_[leaves_surface ? h : next].tail;
+  n = trim_by_vertices(windows, n, site.length, states_[tail].distance, states_[head].distance, margin_);
+  double* begin = workshop.sides[0].data();
+  double* end = workshop.sides[1].data();
+  if (trim_by_neighbours(windows, n, margin_, begin, end)) {
+    std::copy_n(begin, n, windows.begin);
+    std::copy_n(end, n, windows.end);
+    n = drop_empty(windows, n);
+  }
+  if (site.memory > 0) windows = news(windows, n, h, workshop);
+  if (options_.limits.accuracy > 0) windows = merged(windows, n, site.length, workshop);
 }
 
 void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
@@ -306,31 +328,22 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   const Index next = TriangleMesh::next(h);
   const Index previous = TriangleMesh::prev(h);
   const Site& site = sites_[h];
+  for (const Index leaving : {previous, next}) __builtin_prefetch(&sites_[std::max(sites_[leaving].twin, 0)], 1);
   const StepGeometry triangle{site.length, site.apex, sites_[previous].length, sites_[next].length};
-  const bool leaves_surface = site.twin == no_index;  // see waiting_place
-  const Index tail = sites_[leaves_surface ? next : h].tail;
-  const Index head = sites_[leaves_surface ? h : next].tail;
-  n = trim_by_vertices(windows, n, triangle.length, states_[tail].distance, states_[head].distance, margin_);
-  if (trim_by_neighbours(windows, n, margin_, side_of_begin, side_of_end)) {
-    std::copy_n(side_of_begin, n, windows.begin);
-    std::copy_n(side_of_end, n, windows.end);
-    n = drop_empty(windows, n);
-  }
-  if (site.memory > 0) windows = news(windows, n, h, workshop);
-  if (options_.limits.accuracy > 0) windows = merged(windows, n, site.length, workshop);
+  trim(windows, n, h, workshop);
   if (options_.retain && n > 0) {
     KeptList* list = workshop.keep(windows, n);
     list->next = std::exchange(kept_[h], list);
   }
   crossing.n_windows = static_cast<Index>(n);
-  if (n > 0 && !leaves_surface) {
+  if (n > 0 && site.twin != no_index) {
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
     const Index corner = sites_[previous].tail;
     if (apex.distance < states_[corner].distance) {
       crossing.apex_distance = apex.distance;
       const Vec2 along = -triangle.apex;
       const Vec2 back = Vec2(apex.x, 0) - triangle.apex;
-      crossing.apex_arrival = {previous, std::atan2(std::max(isopath::cross(along, back), 0.0), along.dot(back))};
+      crossing.apex_arrival = {previous, 0, Vec2(along.dot(back), isopath::cross(along, back))};
       if (options_.retain) {
         crossing.apex_root = static_cast<Index>(windows.root[apex.window]);
         crossing.apex_arrival.error = windows.error[apex.window];
@@ -389,8 +402,8 @@ WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n
 
 void ListPropagation::commit(const Crossing& crossing) {
   if (crossing.apex_distance < infinity) {
-    offer_vertex(sites_[TriangleMesh::prev(crossing.halfedge)].tail, crossing.apex_distance, crossing.apex_root,
-                 crossing.apex_arrival);
+    offer_vertex({sites_[TriangleMesh::prev(crossing.halfedge)].tail, crossing.apex_root, crossing.apex_distance,
+                  crossing.apex_arrival});
   }
   if (crossing.left != no_index) push_halfedge(crossing.left, crossing.left_least);
   if (crossing.right != no_index) push_halfedge(crossing.right, crossing.right_least);
@@ -404,20 +417,44 @@ void ListPropagation::run_vertices() {
     states_[v].bucket = not_waiting;
     active_.push_back(v);
   }
-  share(active_.size(), [&](std::size_t first, std::size_t past) {
+  const std::size_t n_parts = (active_.size() + vertices_at_a_time - 1) / vertices_at_a_time;
+  if (handed_.size() < n_parts) handed_.resize(n_parts);
+  share(n_parts, worth_sharing / vertices_at_a_time, [&](std::size_t first, std::size_t past) {
     Workshop& workshop = workshops_.local();
-    for (std::size_t i = first; i < past; ++i) send_fan(active_[i], workshop);
+    for (std::size_t part = first; part < past; ++part) {
+      Handed& handed = handed_[part];
+      handed.offers.clear();
+      handed.fans.clear();
+      const std::size_t end = std::min(active_.size(), (part + 1) * vertices_at_a_time);
+      for (std::size_t i = part * vertices_at_a_time; i < end; ++i) {
+        if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
+        relax_edges(active_[i], handed);
+        send_fan(active_[i], workshop, handed);
+      }
+    }
   });
-  for (const Index v : active_) {
-    relax_edges(v);
-    if (!states_[v].may_bend && source_at_[v] == no_index) continue;
-    Index h = mesh_.outgoing(v);
-    do {
-      const Index place = waiting_place(TriangleMesh::next(h));
-      if (place != no_index && sites_[place].waiting[from_corner] != nullptr)
-        push_halfedge(place, sites_[place].waiting[from_corner]->least);
-      h = sites_[TriangleMesh::prev(h)].twin;
-    } while (h != no_index && h != mesh_.outgoing(v));
+  for (std::size_t part = 0; part < n_parts; ++part) {
+    for (const Offer& offer : handed_[part].offers) offer_vertex(offer);
+    for (const auto& [place, least] : handed_[part].fans) push_halfedge(place, least);
+  }
+}
+
+void ListPropagation::fetch_around(Index vertex) const {
+  const Index h = mesh_.outgoing(vertex);
+  __builtin_prefetch(&geometry_.apex(h));
+  for (Index k = 0; k < 3; ++k) __builtin_prefetch(&states_[mesh_.from(h - h % 3 + k)]);
+}
+
+void ListPropagation::fetch(const Crossing& crossing) const {
+  const Index first = crossing.halfedge - crossing.halfedge % 3;
+  for (Index h = first; h < first + 3; ++h) {
+    __builtin_prefetch(&sites_[h]);
+    __builtin_prefetch(&states_[mesh_.from(h)]);
+  }
+  for (const WindowBlock* block : crossing.lists) {
+    if (block == nullptr) continue;
+    const char* line = reinterpret_cast<const char*>(block);
+    for (int k = 0; k < 16; ++k) __builtin_prefetch(line + 64 * k);
   }
 }
 
@@ -433,12 +470,15 @@ void ListPropagation::run_lists() {
   }
   crossings_.resize(active_.size());
   // All are taken before one crosses: what crosses may be put down where another one waits.
-  share(active_.size(), [&](std::size_t first, std::size_t past) {
+  share(active_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
     for (std::size_t i = first; i < past; ++i) take_lists(active_[i], crossings_[i]);
   });
-  share(active_.size(), [&](std::size_t first, std::size_t past) {
+  share(active_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
     Workshop& workshop = workshops_.local();
-    for (std::size_t i = first; i < past; ++i) cross(crossings_[i], workshop);
+    for (std::size_t i = first; i < past; ++i) {
+      if (i + ahead < past) fetch(crossings_[i + ahead]);
+      cross(crossings_[i], workshop);
+    }
   });
   for (const Crossing& crossing : crossings_) commit(crossing);
 }

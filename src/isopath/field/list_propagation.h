@@ -60,11 +60,12 @@ class ListPropagation {
  private:
   static constexpr Index not_waiting = std::numeric_limits<Index>::max();
 
-  /// How the shortest way reaches a vertex: the way back turns by `turn` counter-clockwise from an outgoing half-edge.
+  /// How the shortest way reaches a vertex: the way back has the direction `back`, of any length, in the frame of an
+  /// outgoing half-edge.
   struct Arrival {
     Index halfedge = no_index;
-    double turn = 0;
     double error = 0;  ///< most that the distance is off, by merging windows
+    Vec2 back = Vec2::UnitX();
   };
   /// All that is needed of a half-edge, on one line of the cache.
   struct alignas(64) Site {
@@ -79,11 +80,22 @@ class ListPropagation {
   /// And of a vertex.
   struct alignas(64) VertexState {
     double distance = infinity;
-    Arrival arrival;
     double total_angle = 0;
+    Arrival arrival;
     Index root = no_index;
     Index bucket = not_waiting;
     bool may_bend = false;
+  };
+  struct Offer {
+    Index vertex;
+    Index root;
+    double distance;
+    Arrival arrival;
+  };
+  /// What some vertices hand on: to their neighbours, and to half-edges where their fans wait.
+  struct Handed {
+    std::vector<Offer> offers;
+    std::vector<std::pair<Index, double>> fans;
   };
   /// A list that crossed, with its windows behind it in memory.
   struct KeptList {
@@ -125,16 +137,20 @@ class ListPropagation {
 
   void start(const SourceFronts& fronts);
   void push_halfedge(Index halfedge, double least);
-  void offer_vertex(Index vertex, double distance, Index root, const Arrival& arrival);
+  void offer_vertex(const Offer& offer);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
   /// when windows are retained.
-  Index waiting_place(Index leaving) const;
+  Index waiting_place(Index leaving) const {
+    const Index twin = sites_[leaving].twin;
+    return twin == no_index && options_.retain ? leaving : twin;
+  }
 
-  void relax_edges(Index vertex);
-  void send_fan(Index vertex, Workshop& workshop);
+  void relax_edges(Index vertex, Handed& handed) const;
+  void send_fan(Index vertex, Workshop& workshop, Handed& handed);
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
-  double arrival_angle(Index vertex) const;
 
+  void fetch_around(Index vertex) const;
+  void fetch(const Crossing& crossing) const;
   void take_lists(Index halfedge, Crossing& crossing);
   /// The waiting lists as one, sorted; in one of their blocks when there is only one, otherwise in a scratch.
   WindowArrays gather(Crossing& crossing, Workshop& workshop, std::size_t& n, WindowBlock*& owner) const;
@@ -142,6 +158,8 @@ class ListPropagation {
   /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
   /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
   WindowArrays merged(const WindowArrays& windows, std::size_t& n, double length, Workshop& workshop) const;
+  /// Drops and cuts windows that are beaten by known distances and by each other.
+  void trim(WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
   /// What a list still adds to all that crossed the same half-edge before.
   WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
   void commit(const Crossing& crossing);
@@ -168,6 +186,7 @@ class ListPropagation {
   std::vector<EdgeEnvelope> memories_;  ///< of half-edges that are crossed again and again
   std::vector<Index> active_;
   std::vector<Crossing> crossings_;
+  std::vector<Handed> handed_;
   tbb::enumerable_thread_specific<Workshop> workshops_;
   Index bucket_ = 0;
   double bucket_width_ = 1;

@@ -67,6 +67,15 @@ struct Windows {
     const V circle = hn::Add(offset, hn::Sqrt(hn::Add(square(hn::Sub(at, x)), square(y))));
     return any_line ? hn::IfThenElse(line, hn::Add(offset, hn::Mul(x, at)), circle) : circle;
   }
+  /// What longer() compares: the square of a circle's way from its source, the way of a straight front.
+  V way_to(V at) const {
+    const V circle = hn::Add(square(hn::Sub(at, x)), square(y));
+    return any_line ? hn::IfThenElse(line, hn::Mul(x, at), circle) : circle;
+  }
+  M longer(V way, V than) const {
+    const M circle = hn::Or(hn::Lt(than, zero()), hn::Gt(way, square(than)));
+    return any_line ? hn::Or(hn::And(line, hn::Gt(way, than)), hn::AndNot(line, circle)) : circle;
+  }
   /// Distance of a point beyond the half-edge, straight on.
   V straight_to(V px, V py) const {
     const V circle = hn::Add(offset, hn::Sqrt(hn::Add(square(hn::Sub(px, x)), square(hn::Sub(py, y)))));
@@ -120,11 +129,13 @@ std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double 
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     const M present = hn::FirstN(d, n - i);
     const Windows w(windows, i, present);
-    const V at_begin = hn::Sub(w.distance(w.begin), slack);
-    const V at_end = hn::Sub(w.distance(w.end), slack);
-    const M lost = hn::Or(hn::Lt(hn::Add(tail, w.end), at_end), hn::Lt(hn::Sub(head, w.begin), at_begin));
-    const M by_tail = hn::Lt(hn::Add(tail, w.begin), at_begin);
-    const M by_head = hn::Lt(hn::Sub(head, w.end), at_end);
+    const V to_begin = w.way_to(w.begin);
+    const V to_end = w.way_to(w.end);
+    const V rest_tail = hn::Sub(hn::Add(tail, slack), w.offset);
+    const V rest_head = hn::Sub(hn::Add(head, slack), w.offset);
+    const M lost = hn::Or(w.longer(to_end, hn::Add(rest_tail, w.end)), w.longer(to_begin, hn::Sub(rest_head, w.begin)));
+    const M by_tail = w.longer(to_begin, hn::Add(rest_tail, w.begin));
+    const M by_head = w.longer(to_end, hn::Sub(rest_head, w.end));
     V begin = w.begin;
     V end = w.end;
     const M present_and_cut = hn::AndNot(lost, hn::And(present, hn::Or(by_tail, by_head)));
@@ -149,8 +160,16 @@ std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double 
       begin = hn::IfThenElse(cut_tail, hn::Max(begin, hn::Min(tie_tail, end)), begin);
       end = hn::IfThenElse(cut_head, hn::Min(w.end, hn::Max(tie_head, w.begin)), end);
     }
-    const M keep = hn::And(present, hn::AndNot(lost, hn::Lt(begin, end)));
-    kept += store(windows + kept, keep, begin, end, w.x, w.y, w.offset, windows + i);
+    const M drop = hn::Or(lost, hn::Ge(begin, end));
+    if (kept == i && hn::AllFalse(d, hn::And(present, drop))) {  // mostly; all stay where they are
+      if (!hn::AllFalse(d, present_and_cut)) {
+        hn::StoreU(begin, d, windows.begin + i);
+        hn::StoreU(end, d, windows.end + i);
+      }
+      kept += std::min(n - i, hn::Lanes(d));
+    } else {
+      kept += store(windows + kept, hn::AndNot(drop, present), begin, end, w.x, w.y, w.offset, windows + i);
+    }
   }
   return kept;
 }
@@ -230,8 +249,12 @@ std::size_t drop_empty(const WindowArrays& windows, std::size_t n) {
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     const M present = hn::FirstN(d, n - i);
     const Windows w(windows, i, present);
-    kept += store(windows + kept, hn::And(present, hn::Lt(w.begin, w.end)), w.begin, w.end, w.x, w.y, w.offset,
-                  windows + i);
+    const M keep = hn::And(present, hn::Lt(w.begin, w.end));
+    if (kept == i && hn::AllFalse(d, hn::AndNot(keep, present))) {
+      kept += std::min(n - i, hn::Lanes(d));
+    } else {
+      kept += store(windows + kept, keep, w.begin, w.end, w.x, w.y, w.offset, windows + i);
+    }
   }
   return kept;
 }
@@ -298,8 +321,9 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
     reach.window = reach.direct;
   }
   const auto bend = [&](Index i, double at) {
-    const double way =
-        distance(windows, static_cast<std::size_t>(i), at) + std::hypot(triangle.apex.x() - at, triangle.apex.y());
+    const double aside = triangle.apex.x() - at;
+    const double way = distance(windows, static_cast<std::size_t>(i), at) +
+                       std::sqrt(aside * aside + triangle.apex.y() * triangle.apex.y());
     if (way < reach.distance) {
       reach.distance = way;
       reach.x = at;

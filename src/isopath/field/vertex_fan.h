@@ -9,9 +9,9 @@
 namespace isopath {
 
 /// Directions around a vertex from which a front arrives, or that a source segment serves: no fan is needed within
-/// `half_width` of `angle`, measured counter-clockwise from the vertex's first half-edge.
+/// `half_width` of `angle`, measured counter-clockwise from an outgoing half-edge.
 struct BlockedArc {
-  double angle = 0;
+  double angle = 0;  ///< at most once around
   double half_width = 0;
 };
 
@@ -31,17 +31,22 @@ struct FanInterval {
 FanInterval fan_interval(const IntrinsicGeometry& geometry, Index outgoing, double low, double high);
 
 /// Calls visit(outgoing half-edge, low, high, cut) for every part of the faces around a vertex that no arc blocks;
-/// `low` is zero where the part begins at the face's side, and `cut` tells that it ends before the other.
+/// `low` is zero where the part begins at the face's side, and `cut` tells that it ends before the other. Arcs are
+/// measured from the outgoing half-edge `first`, which is the vertex's first one on the boundary.
 template <class Visit>
-void for_each_free_arc(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, Index vertex, double total,
-                       std::span<const BlockedArc> blocked, Visit&& visit) {
-  const int turns = mesh.is_boundary_vertex(vertex) ? 0 : 2;
+void for_each_free_arc(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, Index vertex, Index first,
+                       double total, std::span<const BlockedArc> blocked, Visit&& visit) {
+  const int turns = mesh.is_boundary_vertex(vertex) ? 0 : 1;
   double start = 0;
-  Index h = mesh.outgoing(vertex);
+  Index h = first;
   do {
     const double angle = geometry.angle_at_tail(h);
+    const auto hides_face = [&](const BlockedArc& arc) {
+      return arc.angle - arc.half_width <= start && start + angle <= arc.angle + arc.half_width;
+    };
+    const bool hidden = std::any_of(blocked.begin(), blocked.end(), hides_face);
     // From one blocked arc to the next: what they leave of [0, angle] in this face. A fan has few arcs.
-    for (double low = 0; low < angle;) {
+    for (double low = hidden ? angle : 0; low < angle;) {
       double high = angle;
       double past = low;
       for (const BlockedArc& arc : blocked) {
@@ -61,7 +66,7 @@ void for_each_free_arc(const TriangleMesh& mesh, const IntrinsicGeometry& geomet
     }
     start += angle;
     h = mesh.next_outgoing(h);
-  } while (h != no_index && h != mesh.outgoing(vertex));
+  } while (h != no_index && h != first);
 }
 
 }  // namespace isopath

@@ -37,15 +37,18 @@ WindowArrays WindowArrays::at(double* first, std::size_t capacity, bool tagged) 
 }
 
 void WindowArrays::copy(std::size_t n, const WindowArrays& to) const {
-  const std::size_t bytes = n * sizeof(double);
-  std::memcpy(to.begin, begin, bytes);
-  std::memcpy(to.end, end, bytes);
-  std::memcpy(to.x, x, bytes);
-  std::memcpy(to.y, y, bytes);
-  std::memcpy(to.offset, offset, bytes);
+  const auto copy_array = [n](const double* from, double* into) {
+    for (std::size_t i = 0; i < n; i += WindowBlock::lanes)
+      std::memcpy(into + i, from + i, WindowBlock::lanes * sizeof(double));
+  };
+  copy_array(begin, to.begin);
+  copy_array(end, to.end);
+  copy_array(x, to.x);
+  copy_array(y, to.y);
+  copy_array(offset, to.offset);
   if (root == nullptr) return;
-  std::memcpy(to.root, root, bytes);
-  std::memcpy(to.error, error, bytes);
+  copy_array(root, to.root);
+  copy_array(error, to.error);
 }
 
 Window WindowArrays::window(std::size_t i) const {
@@ -74,30 +77,21 @@ void WindowArrays::set(std::size_t i, const Window& w) const {
 
 void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b,
                  const WindowArrays& to) {
+  // Lists from two sides hardly interleave: they are merged run by run, a few in all.
   std::size_t i = 0;
   std::size_t j = 0;
-  std::size_t k = 0;
-  const auto copy = [&](const WindowArrays& from, std::size_t at) {
-    to.begin[k] = from.begin[at];
-    to.end[k] = from.end[at];
-    to.x[k] = from.x[at];
-    to.y[k] = from.y[at];
-    to.offset[k] = from.offset[at];
-    if (from.root != nullptr) {
-      to.root[k] = from.root[at];
-      to.error[k] = from.error[at];
-    }
-    ++k;
-  };
   while (i < n_a && j < n_b) {
-    if (a.begin[i] <= b.begin[j]) {
-      copy(a, i++);
-    } else {
-      copy(b, j++);
-    }
+    const bool from_a = a.begin[i] <= b.begin[j];
+    const double* const first = from_a ? a.begin + i : b.begin + j;
+    const double* const past = from_a ? a.begin + n_a : b.begin + n_b;
+    const double other = from_a ? b.begin[j] : a.begin[i];
+    const double* const end = std::find_if(first, past, [&](double x) { return from_a ? x > other : x >= other; });
+    const auto run = static_cast<std::size_t>(end - first);
+    (from_a ? a + i : b + j).copy(run, to + (i + j));
+    (from_a ? i : j) += run;
   }
-  (a + i).copy(n_a - i, to + k);
-  (b + j).copy(n_b - j, to + (k + n_a - i));
+  (a + i).copy(n_a - i, to + (i + j));
+  (b + j).copy(n_b - j, to + (n_a + j));
 }
 
 void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& to) {

@@ -34,7 +34,8 @@ struct WindowArrays {
   /// One window, as it stands in the half-edge's frame; without half-edge.
   Window window(std::size_t i) const;
   void set(std::size_t i, const Window& window) const;
-  /// Copies n windows to `to`.
+  /// Copies n windows to `to`, array after array in the order above, and scribbles on up to WindowBlock::lanes - 1
+  /// places behind them in each.
   void copy(std::size_t n, const WindowArrays& to) const;
 };
 
