@@ -232,12 +232,6 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
                     });
 }
 
-void ListPropagation::take_lists(Index halfedge, Crossing& crossing) {
-  crossing = {};
-  crossing.halfedge = halfedge;
-  for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(sites_[halfedge].waiting[k], nullptr);
-}
-
 WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
   const std::size_t capacity = n + WindowBlock::lanes;
   const std::size_t needed = (tagged ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
@@ -459,21 +453,23 @@ void ListPropagation::fetch(const Crossing& crossing) const {
 }
 
 void ListPropagation::run_lists() {
-  active_.clear();
-  for (const Index h : std::exchange(halfedges_[bucket_], {})) {
-    if (sites_[h].bucket != bucket_) continue;
-    sites_[h].bucket = not_waiting;
-    active_.push_back(h);
-    if (sites_[h].memory > 0 || --sites_[h].memory > -lists_without_memory) continue;
-    memories_.emplace_back().reset(sites_[h].length, snap_width(sites_[h].length));
-    sites_[h].memory = static_cast<Index>(memories_.size());
-  }
-  crossings_.resize(active_.size());
+  const std::vector<Index> waiting = std::exchange(halfedges_[bucket_], {});
+  crossings_.clear();
   // All are taken before one crosses: what crosses may be put down where another one waits.
-  share(active_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
-    for (std::size_t i = first; i < past; ++i) take_lists(active_[i], crossings_[i]);
-  });
-  share(active_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    if (i + ahead < waiting.size()) __builtin_prefetch(&sites_[waiting[i + ahead]], 1);
+    const Index h = waiting[i];
+    Site& site = sites_[h];
+    if (site.bucket != bucket_) continue;
+    site.bucket = not_waiting;
+    Crossing& crossing = crossings_.emplace_back();
+    crossing.halfedge = h;
+    for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(site.waiting[k], nullptr);
+    if (site.memory > 0 || --site.memory > -lists_without_memory) continue;
+    memories_.emplace_back().reset(site.length, snap_width(site.length));
+    site.memory = static_cast<Index>(memories_.size());
+  }
+  share(crossings_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
     Workshop& workshop = workshops_.local();
     for (std::size_t i = first; i < past; ++i) {
       if (i + ahead < past) fetch(crossings_[i + ahead]);

@@ -151,7 +151,6 @@ class ListPropagation {
 
   void fetch_around(Index vertex) const;
   void fetch(const Crossing& crossing) const;
-  void take_lists(Index halfedge, Crossing& crossing);
   /// The waiting lists as one, sorted; in one of their blocks when there is only one, otherwise in a scratch.
   WindowArrays gather(Crossing& crossing, Workshop& workshop, std::size_t& n, WindowBlock*& owner) const;
   void cross(Crossing& crossing, Workshop& workshop);
@@ -184,7 +183,7 @@ class ListPropagation {
   std::vector<std::vector<Index>> halfedges_;           ///< by bucket
   std::vector<std::vector<Index>> vertices_;
   std::vector<EdgeEnvelope> memories_;  ///< of half-edges that are crossed again and again
-  std::vector<Index> active_;
+  std::vector<Index> active_;           ///< vertices
   std::vector<Crossing> crossings_;
   std::vector<Handed> handed_;
   tbb::enumerable_thread_specific<Workshop> workshops_;
