@@ -41,6 +41,12 @@ sources_on_plate cut cut:0:30
 sources_on_plate segment segment:0:0,0.3
 sources_on_plate offset offset:50,20
 
+# patches, each in the colour of its turn
+plan patches_creases data/patch_100mm_a.off --partition creases --spacing 4
+plan patches_medial "${part[@]}" --partition medial --spacing 40
+picture patches_creases patches_creases --color patch --hide tool,arrows
+picture patches_medial patches_medial --color patch --hide tool,arrows
+
 # the medial axis over isolines, seen from above
 plate=(data/patch_100mm_a.off --source boundary --quiet)
 build/isopath medial-axis "${plate[@]}" --prune 0.5 -o "$out/axis.csv"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +31,9 @@ struct PlanArguments {
   std::optional<double> spacing;
   std::optional<double> scallop;
   std::optional<double> clearance;
+  std::optional<std::string> partition;
+  std::optional<double> crease_angle;
+  std::optional<double> unevenness;
   std::optional<std::string> process;
   std::optional<std::string> tool;
   std::optional<double> stand_off;
@@ -87,6 +91,9 @@ Job job_of(const PlanArguments& given) {
   replace(job.spacing, given.spacing);
   replace(job.scallop, given.scallop);
   replace(job.clearance, given.clearance);
+  if (given.partition) job.partition.by = partition_of(*given.partition);
+  if (given.crease_angle) job.partition.crease_angle = *given.crease_angle * std::numbers::pi / 180;
+  replace(job.partition.unevenness, given.unevenness);
   apply_tool(given, job.tool);
   if (!given.formats.empty()) job.programs = given.formats;
   if (given.no_report) job.report = false;
@@ -108,6 +115,7 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
     text += fmt::format("  scallop          {:.4g} mm wanted; mean {:.4g}, 99 % below {:.4g}, highest {:.4g}\n",
                         result.job.scallop, cusps.mean, cusps.p99, cusps.max);
   }
+  if (!result.patches.empty()) text += fmt::format("  patches          {}\n", result.patches.size());
   text += fmt::format("  pieces           {}, lifts {}, links {:.4g} mm\n", f.pieces, f.lifts, f.links_length);
   text += fmt::format("results in {}{}\n", folder, result.job.report ? "; look at its report.html" : "");
   return text;
@@ -149,6 +157,25 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
       ->check(number_above_0())
       ->default_str("the spacing");
+}
+
+void add_partition_options(CLI::App& command, PlanArguments& given) {
+  const PartitionOptions defaults;
+  command
+      .add_option("--partition", given.partition,
+                  "Divide the part into patches, each planned from its own border: none; creases: at sharp edges;\n"
+                  "medial: where wide and narrow places meet; both")
+      ->default_str("none");
+  command
+      .add_option("--crease-angle", given.crease_angle,
+                  "--partition creases: the angle between faces above which an edge is a border, degrees")
+      ->check(number_above_0())
+      ->default_str(fmt::format("{:.0f}", defaults.crease_angle * 180 / std::numbers::pi));
+  command
+      .add_option("--unevenness", given.unevenness,
+                  "--partition medial: greatest over least distance of a patch's medial axis from its border")
+      ->check(number_above_0())
+      ->default_str(fmt::format("{}", defaults.unevenness));
 }
 
 void add_tool_options(CLI::App& command, PlanArguments& given) {
@@ -198,6 +225,7 @@ void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
       ->required();
   command->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m or inch")->default_str("mm");
   add_path_options(*command, *arguments);
+  add_partition_options(*command, *arguments);
   add_tool_options(*command, *arguments);
   command->add_option("--post", arguments->formats, "Format of the program: " + format_names() + "; may be repeated")
       ->type_name("FORMAT")

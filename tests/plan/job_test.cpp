@@ -107,7 +107,12 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
 TEST_F(JobFile, RoundTripKeepsEveryDigit) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     std::mt19937_64 rng(seed);
-    const Job job = random_job(rng, folder_);
+    Job job = random_job(rng, folder_);
+    if (seed % 3 == 0) {
+      job.sources = {SourceSpec{}};
+      job.partition = {static_cast<PartitionBy>(rng() % 4), 0.001 + 3e-19 * static_cast<double>(rng() >> 2),
+                       1 + 1e-18 * static_cast<double>(rng())};
+    }
     const std::string text = job_yaml(job, folder_);
     const Job again = read_job(write("job.yaml", text));
     ASSERT_EQ(job_yaml(again, folder_), text) << "seed " << seed;
@@ -118,6 +123,9 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     ASSERT_EQ(again.planar_direction, job.planar_direction);
     ASSERT_EQ(again.spacing, job.spacing);
     ASSERT_EQ(again.clearance, job.clearance);
+    ASSERT_EQ(again.partition.by, job.partition.by);
+    ASSERT_EQ(again.partition.crease_angle, job.partition.crease_angle);
+    ASSERT_EQ(again.partition.unevenness, job.partition.unevenness);
     ASSERT_EQ(again.tool.process, job.tool.process);
     ASSERT_EQ(again.tool.axis_mode, job.tool.axis_mode);
     ASSERT_EQ(again.tool.fixed_axis, job.tool.fixed_axis);
@@ -149,6 +157,12 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("sources: [boundary,\n  'vertex:x']\n"),
              {"line 3", "sources", "vertex:x", "'x'", "point:X,Y,Z"});
   expect_all(complaint("sources: []\n"), {"sources", "none given", "auto"});
+  expect_all(complaint("partition:\n  by: size\n"),
+             {"line 3", "partition.by", "'size'", "none, creases, medial, both"});
+  expect_all(complaint("partition:\n  unevenness: 1\n"), {"line 3", "partition.unevenness", "1", "above 1"});
+  expect_all(complaint("partition:\n  crease_angle: 4\n"), {"crease_angle", "4", "below π"});
+  expect_all(complaint("sources: [boundary]\npartition:\n  by: medial\n"), {"partition", "medial", "'boundary'"});
+  expect_all(complaint("scallop: 0.1\npartition:\n  by: both\n"), {"partition", "both", "scallop"});
   expect_all(complaint("tool: 5\n"), {"line 2", "tool", "'5'", "mapping"});
   expect_all(complaint("tool:\n  process: knit\n"), {"line 3", "tool.process", "'knit'", "spray, mill, grind"});
   expect_all(complaint("tool:\n  diameter: 3\n"), {"line 3", "tool.diameter", "unknown key", "ball_diameter"});

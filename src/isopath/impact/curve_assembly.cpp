@@ -19,6 +19,13 @@ void CurveAssembly::add_stroke(const SurfaceCurve& stroke) {
   for (std::size_t i = 0; i < stroke.size(); ++i) append(stroke.points[i], stroke.positions[i], MoveKind::cover);
 }
 
+void CurveAssembly::add_stretch(std::span<const ImpactPoint> stretch) {
+  if (stretch.empty()) return;
+  if (!empty()) connect(stretch.front().at);
+  append(stretch.front().at, stretch.front().position, MoveKind::cover);
+  for (const ImpactPoint& point : stretch.subspan(1)) append(point.at, point.position, point.kind);
+}
+
 void CurveAssembly::add_link(const SurfaceCurve& way) {
   for (std::size_t i = 1; i < way.size(); ++i) append(way.points[i], way.positions[i], MoveKind::link);
 }

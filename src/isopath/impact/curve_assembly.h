@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,8 @@ class CurveAssembly {
   Vec3 end() const { return curve_.points.back().position; }
 
   void add_stroke(const SurfaceCurve& stroke);
+  /// Goes along a stretch of another curve, all of it on the surface, with the kinds of its moves.
+  void add_stretch(std::span<const ImpactPoint> stretch);
   /// Goes on along a curve that is covered already and starts where the last stroke ended.
   void add_link(const SurfaceCurve& way);
   ImpactCurve take() { return std::move(curve_); }

@@ -55,6 +55,21 @@ void validate_scallop(const Job& job) {
   }
 }
 
+void validate_partition(const Job& job) {
+  job.partition.validate();
+  if (job.partition.by == PartitionBy::none) return;
+  if (job.scallop > 0) {
+    refuse("partition", fmt::format("{} with a scallop", name_of(job.partition.by)),
+           "patches are planned with a spacing: give one instead of the scallop's height");
+  }
+  if (job.sources != std::vector{SourceSpec{}}) {
+    refuse("partition",
+           fmt::format("{} with source '{}'", name_of(job.partition.by),
+                       job.sources.empty() ? "" : text_of(job.sources.front())),
+           "every patch is measured from its own border: leave out the sources");
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(LengthUnit unit) {
@@ -110,6 +125,11 @@ LengthUnit unit_of(std::string_view name) {
                      std::array{LengthUnit::millimetre, LengthUnit::centimetre, LengthUnit::metre, LengthUnit::inch});
 }
 
+PartitionBy partition_of(std::string_view name) {
+  return value_named("partition", name,
+                     std::array{PartitionBy::none, PartitionBy::creases, PartitionBy::medial, PartitionBy::both});
+}
+
 void check_program_format(std::string_view name) {
   std::vector<std::string_view> names;
   for (const ExportFormat& format : export_formats()) names.push_back(format.name);
@@ -128,6 +148,7 @@ void Job::validate() const {
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
   }
   validate_scallop(*this);
+  validate_partition(*this);
   for (const std::string& format : programs) check_program_format(format);
   tool.validate();
 }

@@ -8,6 +8,7 @@
 
 #include "isopath/core/geometry.h"
 #include "isopath/impact/impact_plan.h"
+#include "isopath/plan/partition.h"
 #include "isopath/plan/source_spec.h"
 #include "isopath/tool/tool_model.h"
 
@@ -30,7 +31,10 @@ struct Job {
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
   /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.
   double scallop = 0;
-  double clearance = 0;   ///< height of lifts above the surface; 0 takes the spacing
+  double clearance = 0;  ///< height of lifts above the surface; 0 takes the spacing
+  /// Patches that are planned one by one, each from its own border: then the sources are `auto`, and the spacing is
+  /// not given by a scallop.
+  PartitionOptions partition = {};
   ToolOptions tool = {};  ///< process, tool, feeds
   std::vector<std::string> programs =
       {};              ///< formats to write the program in, of `export_formats()`; none: the planner chooses
@@ -47,6 +51,7 @@ std::optional<Pattern> pattern_of(std::string_view name);
 /// Throw Error(bad_usage) listing the allowed names.
 Process process_of(std::string_view name);
 LengthUnit unit_of(std::string_view name);
+PartitionBy partition_of(std::string_view name);
 void check_program_format(std::string_view name);
 
 /// Reads a job file (YAML). Paths in it are relative to its folder. Throws Error(bad_input) with file, line, key,

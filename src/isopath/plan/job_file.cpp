@@ -49,6 +49,13 @@ void read_tool(YamlFields fields, ToolOptions& tool) {
   fields.finish();
 }
 
+void read_partition(YamlFields fields, PartitionOptions& partition) {
+  fields.read_text("by", [&](const std::string& text) { partition.by = partition_of(text); });
+  fields.read("crease_angle", partition.crease_angle, {.least = 0, .least_excluded = true});
+  fields.read("unevenness", partition.unevenness, {.least = 1, .least_excluded = true});
+  fields.finish();
+}
+
 std::string vector_text(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 std::string list_text(const std::vector<std::string>& texts) {
@@ -94,6 +101,7 @@ Job read_job(const fs::path& path) {
   fields.read("spacing", job.spacing, {.least = 0});
   fields.read("scallop", job.scallop, {.least = 0});
   fields.read("clearance", job.clearance, {.least = 0});
+  read_partition(fields.section("partition"), job.partition);
   read_tool(fields.section("tool"), job.tool);
   fields.read_texts("programs", [&](const std::string& text) {
     check_program_format(text);
@@ -125,6 +133,8 @@ std::string job_yaml(const Job& job, const fs::path& folder) {
   line("spacing", job.spacing);
   line("scallop", job.scallop);
   line("clearance", job.clearance);
+  text += fmt::format("partition:\n  by: {}\n  crease_angle: {}\n  unevenness: {}\n", name_of(job.partition.by),
+                      job.partition.crease_angle, job.partition.unevenness);
   text += tool_yaml(job.tool);
   line("programs", list_text(job.programs));
   line("report", job.report);

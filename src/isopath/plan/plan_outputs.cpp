@@ -23,6 +23,21 @@ nlohmann::ordered_json scallop_json(const PlanResult& result) {
           {"gouged_fraction", result.scallop->gouged_fraction}};
 }
 
+nlohmann::ordered_json patches_json(const PlanResult& result) {
+  nlohmann::ordered_json patches = nlohmann::ordered_json::array();
+  for (const PatchFigures& patch : result.patches) {
+    patches.push_back(
+        {{"pattern", name_of(std::optional(patch.pattern))},
+         {"area", patch.area},
+         {"cover_length", patch.cover_length},
+         {"pieces", patch.pieces},
+         {"gap",
+          {{"max", patch.gap_max / result.spacing}, {"p99", patch.gap_p99 / result.spacing}, {"cv", patch.evenness}}},
+         {"covered_fraction", patch.covered_fraction}});
+  }
+  return patches;
+}
+
 }  // namespace
 
 std::string summary_json(const PlanResult& result) {
@@ -57,6 +72,7 @@ std::string summary_json(const PlanResult& result) {
                   {"time_s", std::move(times)},
                   {"peak_memory_mb", result.peak_memory_mb},
                   {"warnings", result.warnings}};
+  if (!result.patches.empty()) summary["patches"] = patches_json(result);
   if (result.scallop) summary["scallop"] = scallop_json(result);
   // a file may have any name, JSON only holds UTF-8
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -59,6 +59,30 @@ ReportTable scallop_table(const PlanResult& result) {
             "The ball gouges there."}}};
 }
 
+ReportTable patches_table(const PlanResult& result) {
+  ReportTable table{"Patches", {}};
+  const double w = result.spacing;
+  for (std::size_t p = 0; p < result.patches.size(); ++p) {
+    const PatchFigures& patch = result.patches[p];
+    table.rows.push_back(
+        {fmt::format("patch {}", p + 1), text(patch.area), "mm²",
+         fmt::format("{}, {} mm in {} pieces; by itself {:.2f} % are covered, the widest gap is {} × spacing.",
+                     name_of(std::optional(patch.pattern)), text(patch.cover_length), patch.pieces,
+                     100 * patch.covered_fraction, text(patch.gap_max / w))});
+  }
+  return table;
+}
+
+/// The number of its patch at every vertex that is shown, counted from 1.
+std::vector<double> patches_at_vertices(const PlanResult& result) {
+  const RefinedMesh& shown = result.display.refined;
+  std::vector<double> number(shown.mesh.n_vertices(), infinity);
+  for (Index f = 0; f < shown.mesh.n_faces(); ++f) {
+    for (const Index v : shown.mesh.triangle(f)) number[v] = result.patch_of_face[shown.old_face[f]] + 1;
+  }
+  return number;
+}
+
 std::vector<ReportIsoline> isolines_of(const PlanResult& result) {
   std::vector<ReportIsoline> lines;
   for (const Contour& contour : result.impact.contours) {
@@ -94,11 +118,16 @@ std::string plan_report(const PlanResult& result) {
          .greatest = 2 * wanted,
          .limit = 1.02 * wanted});
   }
+  if (!result.patches.empty()) {
+    data.scalars.push_back({.name = "patch", .unit = "", .values = patches_at_vertices(result)});
+    data.subtitle += fmt::format(", {} patches", result.patches.size());
+  }
   data.isolines = isolines_of(result);
   data.impact = &result.impact.curve;
   data.tool = &result.tool;
   data.tables = {figures_table(result), coverage_table(result)};
   if (result.scallop) data.tables.push_back(scallop_table(result));
+  if (!result.patches.empty()) data.tables.push_back(patches_table(result));
   data.histograms = {{.title = "Gap over the surface",
                       .unit = "mm",
                       .bin_width = w / 20,

@@ -202,6 +202,52 @@ void measure(PlanResult& result, const IntrinsicGeometry* metric, Progress& prog
   for (double& gap : display.gap) gap *= 2;
 }
 
+/// All of the part by one field.
+void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress) {
+  const TriangleMesh& mesh = result.part.mesh;
+  Field field = field_of(result.job, result.part, metric, progress);
+  check_pass_count(field.at_vertices, result.spacing);
+  check_facing(mesh, field.at_vertices, result.job.tool);
+  warn_of_unreached(mesh, field.at_vertices, result.warnings);
+  clock.ends("field");
+
+  plan_curve(result, field, metric, progress);
+  result.distances = std::move(field.at_vertices);
+  if (result.job.report) {
+    result.display.refined = refine_for_display(mesh, result.spacing);
+    result.display.distances = values_at_vertices(*field.function, result.display.refined, result.distances, progress);
+  }
+  // the field ends here: its windows are the largest thing in memory, and the gap needs windows of its own
+  field.function.reset();
+  clock.ends("impact");
+}
+
+/// Patch by patch, each with a field from its own border.
+void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) {
+  const Job& job = result.job;
+  check_pass_count({0, 0.5 * result.part.mesh.size()}, result.spacing);
+  Partition parts = partition(std::move(result.part.mesh), result.spacing, job.partition, progress);
+  clock.ends("partition");
+  RefinedMesh shown;
+  if (job.report) shown = parted(refine_for_display(parts.mesh, result.spacing), parts.patch_of_face);
+  const PatchPlanOptions options{.pattern = job.pattern,
+                                 .planar_direction = job.planar_direction,
+                                 .spacing = result.spacing,
+                                 .clearance = job.clearance,
+                                 .accuracy = field_accuracy * parts.mesh.size()};
+  PatchedPlan plan = plan_patches(parts, options, job.report ? &shown : nullptr, progress);
+  result.part.mesh = std::move(parts.mesh);
+  check_facing(result.part.mesh, plan.distances, job.tool);
+  result.pattern = plan.patches.front().pattern;
+  append(result.warnings, plan.impact.warnings);
+  result.impact = std::move(plan.impact);
+  result.patches = std::move(plan.patches);
+  result.patch_of_face = std::move(plan.patch_of_face);
+  result.distances = std::move(plan.distances);
+  result.display = {std::move(shown), std::move(plan.display_distances), {}};
+  clock.ends("impact");
+}
+
 }  // namespace
 
 PlanResult run_plan(const Job& job, Progress& progress) {
@@ -220,20 +266,11 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   check_against_size(job, result.spacing, mesh.size());
   const std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
-  Field field = field_of(job, result.part, metric, progress);
-  check_pass_count(field.at_vertices, result.spacing);
-  check_facing(mesh, field.at_vertices, job.tool);
-  warn_of_unreached(mesh, field.at_vertices, result.warnings);
-  clock.ends("field");
-
-  plan_curve(result, field, metric, progress);
-  result.distances = std::move(field.at_vertices);
-  if (job.report) {
-    result.display.refined = refine_for_display(mesh, result.spacing);
-    result.display.distances = values_at_vertices(*field.function, result.display.refined, result.distances, progress);
+  if (job.partition.by != PartitionBy::none) {
+    plan_by_patches(result, clock, progress);
+  } else {
+    plan_whole(result, metric, clock, progress);
   }
-  field.function.reset();  // its windows are the largest thing in memory, and the gap needs windows of its own
-  clock.ends("impact");
 
   measure(result, metric, progress);
   result.figures = path_figures(result.impact.curve, result.spacing);

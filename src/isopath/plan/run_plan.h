@@ -11,6 +11,7 @@
 #include "isopath/plan/job.h"
 #include "isopath/plan/load_part.h"
 #include "isopath/plan/output_folder.h"
+#include "isopath/plan/patch_plans.h"
 #include "isopath/plan/path_figures.h"
 #include "isopath/tool/scallop.h"
 #include "isopath/tool/tool_path.h"
@@ -38,7 +39,9 @@ struct PlanResult {
   Pattern pattern = Pattern::spiral;
   std::vector<double> distances;  ///< at every vertex: from the sources, or the height for planar; infinity: unreached
   ImpactPlan impact;
-  DisplaySurface display;  ///< empty where the job wants no report
+  DisplaySurface display;             ///< empty where the job wants no report
+  std::vector<PatchFigures> patches;  ///< in the order of work, where the job divides the part
+  std::vector<Index> patch_of_face;   ///< for every face of the part
   GapReport gap;
   /// Covering length × spacing / area: 1 is the least that evenly spaced passes need. With a scallop, both in the
   /// ball's metric.
