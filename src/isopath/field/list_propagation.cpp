@@ -232,6 +232,11 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
                     });
 }
 
+void ListPropagation::Workshop::make_sides(std::size_t n) {
+  if (sides[0].size() >= n + WindowBlock::lanes + 1) return;
+  for (auto& side : sides) side.resize(2 * n + WindowBlock::lanes + 1);
+}
+
 WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
   const std::size_t capacity = n + WindowBlock::lanes;
   const std::size_t needed = (tagged ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
@@ -313,11 +318,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   std::size_t n = 0;
   WindowBlock* owner = nullptr;
   WindowArrays windows = gather(crossing, workshop, n, owner);
-  if (workshop.sides[0].size() < n + WindowBlock::lanes + 1) {
-    for (auto& side : workshop.sides) side.resize(2 * n + WindowBlock::lanes + 1);
-  }
-  double* side_of_begin = workshop.sides[0].data();
-  double* side_of_end = workshop.sides[1].data();
+  workshop.make_sides(n);
 
   const Index next = TriangleMesh::next(h);
   const Index previous = TriangleMesh::prev(h);
@@ -331,6 +332,9 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   }
   crossing.n_windows = static_cast<Index>(n);
   if (n > 0 && site.twin != no_index) {
+    workshop.make_sides(n);  // merging and remembering may have divided windows
+    double* side_of_begin = workshop.sides[0].data();
+    double* side_of_end = workshop.sides[1].data();
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
     const Index corner = sites_[previous].tail;
     if (apex.distance < states_[corner].distance) {

@@ -121,6 +121,8 @@ class ListPropagation {
 
     WindowArrays scratch(int which, std::size_t n);
     KeptList* keep(const WindowArrays& windows, std::size_t n);
+    /// Room in `sides` for a list of n windows.
+    void make_sides(std::size_t n);
 
     WindowBlocks blocks;
     bool tagged;
