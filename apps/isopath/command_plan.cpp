@@ -27,6 +27,8 @@ struct PlanArguments {
   std::optional<std::string> unit;
   std::vector<std::string> sources;
   std::optional<std::string> pattern;
+  bool blend = false;
+  std::optional<std::string> blend_form;
   std::vector<double> direction;
   std::optional<double> spacing;
   std::optional<double> scallop;
@@ -85,6 +87,8 @@ Job job_of(const PlanArguments& given) {
   if (given.unit) job.unit = unit_of(*given.unit);
   if (!given.sources.empty()) job.sources = parse_sources(given.sources);
   if (given.pattern) job.pattern = pattern_of(*given.pattern);
+  if (given.blend) job.blend = BlendForm::least;
+  if (given.blend_form) job.blend = blend_of(*given.blend_form);
   if (!given.direction.empty()) job.planar_direction = Vec3(given.direction[0], given.direction[1], given.direction[2]);
   // each gives the distance between passes: what is given last, here, replaces what the file gives
   if (given.spacing || given.scallop) job.spacing = job.scallop = 0;
@@ -139,9 +143,14 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command
       .add_option("--pattern", given.pattern,
                   "auto: spiral where the isolines are closed, else meander; two-way where that is better;\n"
-                  "contour: a pass for every isoline; spiral; meander; two-way: one closed curve without a lift;\n"
+                  "contour: a pass for every isoline; spiral; double-spiral: goes in and comes out again; meander;\n"
+                  "two-way: one closed curve without a lift; "
                   "planar: cuts with parallel planes")
       ->default_str("auto");
+  command.add_flag("--blend", given.blend,
+                   "Blend the distances with the medial axis, so that a part without holes gets one spiral");
+  command.add_option("--blend-form", given.blend_form, "Blend in this form: least, paper; or none")
+      ->default_str("least with --blend, else none");
   command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")
       ->delimiter(',')
       ->expected(3)

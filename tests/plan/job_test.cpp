@@ -108,7 +108,12 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     std::mt19937_64 rng(seed);
     Job job = random_job(rng, folder_);
+    if (seed % 3 == 1) {
+      job.pattern = seed % 2 == 0 ? Pattern::spiral : Pattern::double_spiral;
+      job.blend = seed % 4 < 2 ? BlendForm::least : BlendForm::paper;
+    }
     if (seed % 3 == 0) {
+      if (job.pattern == Pattern::double_spiral) job.pattern.reset();
       job.sources = {SourceSpec{}};
       job.partition = {static_cast<PartitionBy>(rng() % 4), 0.001 + 3e-19 * static_cast<double>(rng() >> 2),
                        1 + 1e-18 * static_cast<double>(rng())};
@@ -120,6 +125,7 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     ASSERT_EQ(again.unit, job.unit);
     ASSERT_EQ(again.sources, job.sources) << "seed " << seed;
     ASSERT_EQ(again.pattern, job.pattern);
+    ASSERT_EQ(again.blend, job.blend);
     ASSERT_EQ(again.planar_direction, job.planar_direction);
     ASSERT_EQ(again.spacing, job.spacing);
     ASSERT_EQ(again.clearance, job.clearance);
@@ -157,6 +163,11 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("sources: [boundary,\n  'vertex:x']\n"),
              {"line 3", "sources", "vertex:x", "'x'", "point:X,Y,Z"});
   expect_all(complaint("sources: []\n"), {"sources", "none given", "auto"});
+  expect_all(complaint("blend: more\n"), {"line 2", "blend", "'more'", "none, least, paper"});
+  expect_all(complaint("blend: least\npattern: meander\n"), {"blend", "meander", "double-spiral"});
+  expect_all(complaint("blend: least\nscallop: 0.1\n"), {"blend", "scallop"});
+  expect_all(complaint("pattern: double-spiral\nscallop: 0.1\n"), {"pattern", "scallop"});
+  expect_all(complaint("blend: least\npartition:\n  by: medial\n"), {"partition", "medial"});
   expect_all(complaint("partition:\n  by: size\n"),
              {"line 3", "partition.by", "'size'", "none, creases, medial, both"});
   expect_all(complaint("partition:\n  unevenness: 1\n"), {"line 3", "partition.unevenness", "1", "above 1"});

@@ -205,6 +205,8 @@ std::string_view name_of(Pattern pattern) {
       return "contour";
     case Pattern::spiral:
       return "spiral";
+    case Pattern::double_spiral:
+      return "double-spiral";
     case Pattern::meander:
       return "meander";
     case Pattern::two_way:
@@ -222,6 +224,10 @@ void ImpactOptions::validate() const {
   if (!(spacing > 0 && std::isfinite(spacing))) reject("must be a positive length in mm", "option spacing", spacing);
   if (!(clearance >= 0 && std::isfinite(clearance)))
     reject("must be a length in mm, or 0 for the default", "option clearance", clearance);
+  if (pattern == Pattern::double_spiral) {
+    throw Error(ErrorCode::bad_usage, "a double spiral needs a function at the vertices: see level_spiral",
+                {.element = "option pattern"});
+  }
 }
 
 ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options,

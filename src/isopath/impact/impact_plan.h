@@ -15,6 +15,9 @@ namespace isopath {
 enum class Pattern {
   contour,  ///< every isoline is a pass of its own
   spiral,   ///< nested closed isolines become one spiral
+  /// nested closed isolines become one closed curve that goes in along one arm and out along another; planned by
+  /// level_spiral, not by plan_impact
+  double_spiral,
   meander,  ///< quasi-parallel open isolines are joined end to end
   two_way,  ///< all isolines become one closed curve without a lift, on any connected surface
   planar,   ///< the cutting-plane baseline: the function is a height, the isolines are plane cuts

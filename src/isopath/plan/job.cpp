@@ -13,12 +13,17 @@
 namespace isopath {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 6> patterns = {{{"auto", std::nullopt},
-                                                                                          {"contour", Pattern::contour},
-                                                                                          {"spiral", Pattern::spiral},
-                                                                                          {"meander", Pattern::meander},
-                                                                                          {"two-way", Pattern::two_way},
-                                                                                          {"planar", Pattern::planar}}};
+constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 7> patterns = {
+    {{"auto", std::nullopt},
+     {"contour", Pattern::contour},
+     {"spiral", Pattern::spiral},
+     {"double-spiral", Pattern::double_spiral},
+     {"meander", Pattern::meander},
+     {"two-way", Pattern::two_way},
+     {"planar", Pattern::planar}}};
+
+constexpr std::array<std::pair<std::string_view, std::optional<BlendForm>>, 3> blends = {
+    {{"none", std::nullopt}, {"least", BlendForm::least}, {"paper", BlendForm::paper}}};
 
 [[noreturn]] void refuse_name(const char* what, std::string_view name, const std::vector<std::string_view>& allowed) {
   throw Error(ErrorCode::bad_usage, fmt::format("unknown {}", what),
@@ -38,6 +43,18 @@ Value value_named(const char* what, std::string_view name, const std::array<Valu
 [[noreturn]] void refuse(const char* field, std::string value, std::string advice = {}) {
   throw Error(ErrorCode::bad_usage, "the job cannot be run like this",
               {.element = field, .value = std::move(value), .advice = std::move(advice)});
+}
+
+void validate_blend(const Job& job) {
+  const bool nested = job.blend || job.pattern == Pattern::double_spiral;
+  if (nested && job.partition.by != PartitionBy::none)
+    refuse("partition", std::string(name_of(job.partition.by)), "patches are neither blended nor double spirals");
+  if (!job.blend) return;
+  if (job.pattern == Pattern::planar || job.pattern == Pattern::meander) {
+    refuse("blend", fmt::format("with the pattern {}", name_of(job.pattern)),
+           "blended isolines are closed curves: take spiral, double-spiral, contour or two-way");
+  }
+  if (job.scallop > 0) refuse("blend", "with a scallop", "distances are blended in space only");
 }
 
 void validate_scallop(const Job& job) {
@@ -116,6 +133,22 @@ std::optional<Pattern> pattern_of(std::string_view name) {
   refuse_name("pattern", name, names);
 }
 
+std::string_view name_of(const std::optional<BlendForm>& form) {
+  for (const auto& [name, choice] : blends) {
+    if (choice == form) return name;
+  }
+  return "";
+}
+
+std::optional<BlendForm> blend_of(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const auto& [known, choice] : blends) {
+    if (known == name) return choice;
+    names.push_back(known);
+  }
+  refuse_name("blend", name, names);
+}
+
 Process process_of(std::string_view name) {
   return value_named("process", name, std::array{Process::spray, Process::mill, Process::grind});
 }
@@ -149,6 +182,9 @@ void Job::validate() const {
   }
   validate_scallop(*this);
   validate_partition(*this);
+  validate_blend(*this);
+  if (pattern == Pattern::double_spiral && scallop > 0)
+    refuse("pattern", "double-spiral with a scallop", "double spirals keep a spacing in space only");
   for (const std::string& format : programs) check_program_format(format);
   tool.validate();
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "isopath/contour/blend.h"
 #include "isopath/core/geometry.h"
 #include "isopath/impact/impact_plan.h"
 #include "isopath/plan/partition.h"
@@ -26,6 +27,9 @@ struct Job {
   LengthUnit unit = LengthUnit::millimetre;          ///< unit of the mesh file's coordinates
   std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
   std::optional<Pattern> pattern = {};               ///< none: what suits the part, see plan/auto_pattern.h
+  /// Blends the distances with the medial axis, so that the isolines of a part without holes are nested closed curves:
+  /// for the patterns contour, spiral, double-spiral and two-way.
+  std::optional<BlendForm> blend = {};
   Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
@@ -48,6 +52,10 @@ struct Job {
 std::string_view name_of(const std::optional<Pattern>& pattern);
 /// Its inverse. Throws Error(bad_usage) listing the allowed names.
 std::optional<Pattern> pattern_of(std::string_view name);
+/// The name a job file gives a blend: `none` for none.
+std::string_view name_of(const std::optional<BlendForm>& form);
+/// Its inverse. Throws Error(bad_usage) listing the allowed names.
+std::optional<BlendForm> blend_of(std::string_view name);
 /// Throw Error(bad_usage) listing the allowed names.
 Process process_of(std::string_view name);
 LengthUnit unit_of(std::string_view name);

@@ -97,6 +97,7 @@ Job read_job(const fs::path& path) {
     if (!job.sources.back().file.empty()) job.sources.back().file = resolved(job.sources.back().file, folder);
   });
   fields.read_text("pattern", [&](const std::string& text) { job.pattern = pattern_of(text); });
+  fields.read_text("blend", [&](const std::string& text) { job.blend = blend_of(text); });
   fields.read("planar_direction", job.planar_direction);
   fields.read("spacing", job.spacing, {.least = 0});
   fields.read("scallop", job.scallop, {.least = 0});
@@ -129,6 +130,7 @@ std::string job_yaml(const Job& job, const fs::path& folder) {
   line("unit", name_of(job.unit));
   line("sources", list_text(sources));
   line("pattern", name_of(job.pattern));
+  line("blend", name_of(job.blend));
   line("planar_direction", vector_text(job.planar_direction));
   line("spacing", job.spacing);
   line("scallop", job.scallop);

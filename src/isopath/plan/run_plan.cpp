@@ -10,13 +10,16 @@
 #include <optional>
 #include <utility>
 
+#include "isopath/contour/blend_mesh.h"
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/level_spiral.h"
 #include "isopath/plan/auto_pattern.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
+#include "isopath/plan/nested_plan.h"
 #include "isopath/plan/part_checks.h"
 #include "isopath/plan/scallop_metric.h"
 #include "isopath/tool/make_tool_path.h"
@@ -109,6 +112,7 @@ constexpr double field_accuracy = 1e-7;
 struct Field {
   std::unique_ptr<SurfaceFunction> function;
   std::vector<double> at_vertices;
+  double spacing = 0;  ///< of nested levels; 0 where the function is not made for such
 };
 
 Field field_of(const Job& job, const Part& part, const IntrinsicGeometry* metric, Progress& progress) {
@@ -144,11 +148,51 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
   all.insert(all.end(), more.begin(), more.end());
 }
 
+/// The function whose levels are nested closed curves, on a mesh made fine enough for it. A part that has none keeps
+/// the field it has, and a two-way curve is planned.
+Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
+  if (result.job.blend && nested_shape_of(result.part.mesh) == NestedShape::other) {
+    result.warnings.push_back(
+        "the part has several holes or handles: no isoline goes round all of them, so nothing was blended and a "
+        "two-way curve was planned");
+    result.pattern = Pattern::two_way;
+    return field;
+  }
+  const double spacing = result.spacing;
+  TriangleMesh& mesh = result.part.mesh;
+  TriangleMesh fine = refine_for_blend(mesh, *field.function, spacing, progress);
+  NestedField nested;
+  for (int round = 0; round < 2; ++round) {
+    field.function.reset();
+    mesh = std::move(fine);
+    field = field_of(result.job, result.part, nullptr, progress);
+    nested = nested_field(result.job, static_cast<const ExactField&>(*field.function), spacing, progress);
+    fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
+    if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
+  }
+  std::vector<double> values = nested.values;
+  return {std::make_unique<VertexField>(mesh, std::move(nested.values)), std::move(values), nested.spacing};
+}
+
+ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& progress) {
+  return level_spiral(static_cast<const VertexField&>(*field.function),
+                      {.arms = result.pattern == Pattern::double_spiral ? 2 : 1,
+                       .spacing = field.spacing,
+                       .asked_spacing = result.spacing,
+                       .clearance = result.job.clearance},
+                      progress);
+}
+
 /// The impact curve, with the pattern the job names or one that suits the part.
 void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry* metric, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   ImpactOptions options{.spacing = result.spacing, .clearance = result.job.clearance, .metric = metric};
-  if (result.job.pattern) {
+  if (wants_nested_levels(result.job)) {
+    const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
+    options.pattern = result.pattern;
+    result.impact = field.spacing > 0 && is_spiral ? plan_nested(result, field, progress)
+                                                   : plan_impact(mesh, *field.function, options, progress);
+  } else if (result.job.pattern) {
     options.pattern = result.pattern = *result.job.pattern;
     result.impact = plan_impact(mesh, *field.function, options, progress);
   } else {
@@ -209,6 +253,10 @@ void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock&
   check_pass_count(field.at_vertices, result.spacing);
   check_facing(mesh, field.at_vertices, result.job.tool);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
+  if (wants_nested_levels(result.job)) {
+    result.pattern = result.job.pattern.value_or(Pattern::spiral);
+    field = nested_field_of(result, std::move(field), progress);
+  }
   clock.ends("field");
 
   plan_curve(result, field, metric, progress);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isopath/core/progress.h"
+#include "isopath/field/vertex_field.h"
+#include "isopath/plan/job.h"
+
+namespace isopath {
+
+/// How the components of a part are bounded: what blended levels need to know.
+enum class NestedShape {
+  disc,     ///< every component is a disc, or closed and without handles
+  annulus,  ///< one component with two boundary loops
+  other,    ///< more holes or handles: no level is one closed curve around all of them
+};
+NestedShape nested_shape_of(const TriangleMesh& mesh);
+
+/// True when the job's pattern or blend asks for nested closed levels.
+bool wants_nested_levels(const Job& job);
+
+/// A function whose levels (k - ½) × spacing are to be nested closed curves.
+struct NestedField {
+  std::vector<double> values;  ///< at the vertices, mm
+  double spacing = 0;          ///< that the levels are to have, mm
+};
+
+/// The function for a job, from the distances on a mesh that is fine enough (contour/blend_mesh.h). `spacing` is the
+/// one to keep. Throws Error(no_plan) for a part with more holes, and what `blend` throws.
+NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress);
+
+}  // namespace isopath
