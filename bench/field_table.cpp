@@ -31,7 +31,8 @@ struct Cost {
 
 Cost distances_only(const TriangleMesh& mesh, const SourceSet& sources) {
   const IntrinsicGeometry geometry(mesh);
-  ListPropagation propagation(mesh, geometry, sources, {});
+  ListPropagation propagation(mesh, geometry, false);
+  propagation.start(source_fronts(mesh, geometry, sources));
   propagation.run(infinity, Progress::none());
   return {0, propagation.propagated(), 0, propagation.window_bytes()};
 }

@@ -13,7 +13,8 @@ std::vector<double> exact_distances(const TriangleMesh& mesh, const SourceSet& s
 std::vector<double> exact_distances(const TriangleMesh& mesh, const IntrinsicGeometry& metric, const SourceSet& sources,
                                     double stop_distance, Progress& progress) {
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
-  ListPropagation propagation(mesh, metric, sources, {});
+  ListPropagation propagation(mesh, metric, false);
+  propagation.start(source_fronts(mesh, metric, sources));
   propagation.run(stop_distance, progress);
   return propagation.vertex_distances();
 }

@@ -1,9 +1,11 @@
 #include "isopath/field/exact_field.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field_data.h"
@@ -141,9 +143,16 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   options.validate();
   index_sources(*data);
-  ListPropagation propagation(
-      data->mesh, data->geometry, sources,
-      {.retain = true, .limits = merge_limits(data->mesh, data->geometry, sources, options, progress)});
+  MergeLimits limits;
+  SourceFronts fronts;
+  std::optional<ListPropagation> room;
+  tbb::parallel_invoke([&] { limits = merge_limits(data->mesh, data->geometry, sources, options, progress); },
+                       [&] {
+                         fronts = source_fronts(data->mesh, data->geometry, sources);
+                         room.emplace(data->mesh, data->geometry, true);
+                       });
+  ListPropagation& propagation = *room;
+  propagation.start(fronts, limits);
   propagation.run(options.stop_distance, progress);
   data->propagated = propagation.propagated();
   ListPropagation::RetainedWindows retained = propagation.take_windows(progress);

@@ -2,10 +2,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "isopath/field/vertex_fan.h"
@@ -45,19 +47,17 @@ void share(std::size_t n, std::size_t at_least, Work&& work) {
 
 }  // namespace
 
-ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
-                                 const Options& options)
+ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain)
     : mesh_(mesh),
       geometry_(geometry),
-      options_(options),
+      retain_(retain),
       sites_(mesh.n_halfedges()),
       states_(mesh.n_vertices()),
       source_at_(mesh.n_vertices(), no_index),
-      fans_(options.retain ? mesh.n_halfedges() : 0),
-      kept_(options.retain ? mesh.n_halfedges() : 0, nullptr),
-      workshops_(options.retain),
-      bucket_width_(bucket_width * mean_length(mesh, geometry)),
-      margin_(margin_of_size * geometry.size() + 2 * options.limits.accuracy) {
+      fans_(retain ? mesh.n_halfedges() : 0),
+      kept_(retain ? mesh.n_halfedges() : 0, nullptr),
+      workshops_(retain),
+      bucket_width_(bucket_width * mean_length(mesh, geometry)) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     Site& site = sites_[h];
     site.length = geometry.length(h);
@@ -68,7 +68,6 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
   for (Index h = 0; h < mesh.n_halfedges(); ++h) states_[sites_[h].tail].total_angle += geometry.angle_at_tail(h);
   for (Index v = 0; v < mesh.n_vertices(); ++v)
     states_[v].may_bend = isopath::may_bend(mesh, v, states_[v].total_angle);
-  start(source_fronts(mesh, geometry, sources));
 }
 
 std::vector<double> ListPropagation::vertex_distances() const {
@@ -89,14 +88,23 @@ std::size_t ListPropagation::window_bytes() const {
   return bytes;
 }
 
-void ListPropagation::start(const SourceFronts& fronts) {
+void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limits) {
+  limits_ = limits;
+  margin_ = margin_of_size * geometry_.size() + 2 * limits.accuracy;
   WindowBlocks& blocks = workshops_.local().blocks;
+  struct Arriving {
+    Index place;
+    Index front;
+    double begin;
+  };
+  std::vector<Arriving> arriving;
   for (const SourceFronts::Vertex& source : fronts.vertices) {
     source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
     source_arcs_.push_back(source.blocked);
     offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex)}});
   }
-  for (const SourceFronts::Front& front : fronts.fronts) {
+  for (Index i = 0; i < static_cast<Index>(fronts.fronts.size()); ++i) {
+    const SourceFronts::Front& front = fronts.fronts[i];
     const Index h = front.halfedge;
     const Window& w = front.window;
     const double length = geometry_.length(h);
@@ -111,17 +119,29 @@ void ListPropagation::start(const SourceFronts& fronts) {
                     w.distance(length),
                     {TriangleMesh::next(h), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}});
     }
-    if (w.filler && options_.retain) {
+    if (w.filler && retain_) {
       const Index edge = mesh_.edge_of(h);
       edge_sources_.emplace_back(edge, mesh_.halfedge_of(edge) == h ? w : w.flipped(length));
     }
     const Index place = waiting_place(h);
-    if (place == no_index || w.filler) continue;
-    const Window turned = w.flipped(length);
-    WindowBlock* block = blocks.take(1);
-    blocks.arrays(block).set(0, turned);
-    block->size = 1;
-    block->least = std::max(turned.min_distance(), 0.0);
+    if (place != no_index && !w.filler) arriving.push_back({place, i, length - w.end});
+  }
+  // One list for each half-edge: of a path's many fronts several arrive at the same one.
+  tbb::parallel_sort(arriving.begin(), arriving.end(), [](const Arriving& a, const Arriving& b) {
+    return std::tie(a.place, a.begin, a.front) < std::tie(b.place, b.begin, b.front);
+  });
+  for (std::size_t first = 0, past = 0; first < arriving.size(); first = past) {
+    const Index place = arriving[first].place;
+    while (past < arriving.size() && arriving[past].place == place) ++past;
+    WindowBlock* block = blocks.take(past - first);
+    block->size = static_cast<Index>(past - first);
+    block->least = infinity;
+    for (std::size_t i = first; i < past; ++i) {
+      const SourceFronts::Front& front = fronts.fronts[arriving[i].front];
+      const Window turned = front.window.flipped(sites_[front.halfedge].length);
+      blocks.arrays(block).set(i - first, turned);
+      block->least = std::min(block->least, std::max(turned.min_distance(), 0.0));
+    }
     put_down(place, from_corner, block);
     push_halfedge(place, block->least);
   }
@@ -199,7 +219,7 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
   }
   const std::span<const BlockedArc> blocked =
       is_source ? std::span<const BlockedArc>(source_arcs_[source_at_[vertex]]) : std::span(&behind, 1);
-  if (options_.retain) {
+  if (retain_) {
     Index h = mesh_.outgoing(vertex);
     do {
       fans_[h] = {};
@@ -208,7 +228,7 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
   }
   for_each_free_arc(mesh_, geometry_, vertex, first, total, blocked,
                     [&](Index outgoing, double low, double high, bool cut) {
-                      if (options_.retain)
+                      if (retain_)
                         fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
                       const Index opposite = TriangleMesh::next(outgoing);
                       const Index place = waiting_place(opposite);
@@ -310,7 +330,7 @@ void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Works
     n = drop_empty(windows, n);
   }
   if (site.memory > 0) windows = news(windows, n, h, workshop);
-  if (options_.limits.accuracy > 0) windows = merged(windows, n, site.length, workshop);
+  if (limits_.accuracy > 0) windows = merged(windows, n, site.length, workshop);
 }
 
 void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
@@ -326,7 +346,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   for (const Index leaving : {previous, next}) __builtin_prefetch(&sites_[std::max(sites_[leaving].twin, 0)], 1);
   const StepGeometry triangle{site.length, site.apex, sites_[previous].length, sites_[next].length};
   trim(windows, n, h, workshop);
-  if (options_.retain && n > 0) {
+  if (retain_ && n > 0) {
     KeptList* list = workshop.keep(windows, n);
     list->next = std::exchange(kept_[h], list);
   }
@@ -342,7 +362,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
       const Vec2 along = -triangle.apex;
       const Vec2 back = Vec2(apex.x, 0) - triangle.apex;
       crossing.apex_arrival = {previous, 0, Vec2(along.dot(back), isopath::cross(along, back))};
-      if (options_.retain) {
+      if (retain_) {
         crossing.apex_root = static_cast<Index>(windows.root[apex.window]);
         crossing.apex_arrival.error = windows.error[apex.window];
       }
@@ -390,7 +410,7 @@ WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n
   EdgeEnvelope& envelope = workshop.envelope;
   envelope.reset(length, snap_width(length));
   for (std::size_t i = 0; i < n; ++i) envelope.insert(windows.window(i));
-  envelope.merge(options_.limits);
+  envelope.merge(limits_);
   const std::vector<Window>& left = envelope.windows();
   const WindowArrays to = left.size() <= n ? windows : workshop.scratch(3, left.size());
   n = left.size();

@@ -32,13 +32,11 @@ struct FanArc {
 /// it then sends another. Nothing is dropped but rays that are longer than a way that is known; the shortest ways stay.
 class ListPropagation {
  public:
-  struct Options {
-    bool retain = false;  ///< keep the windows of every edge
-    MergeLimits limits;
-  };
-  ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
-                  const Options& options);
+  /// `retain` keeps the windows of every edge.
+  ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain);
 
+  /// Lays out the sources; once, before run().
+  void start(const SourceFronts& fronts, const MergeLimits& limits = {});
   void run(double stop_distance, Progress& progress);
 
   /// Windows side by side, edge after edge: those of edge e from first[e] up to first[e + 1].
@@ -137,14 +135,13 @@ class ListPropagation {
   /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
   enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };
 
-  void start(const SourceFronts& fronts);
   void push_halfedge(Index halfedge, double least);
   void offer_vertex(const Offer& offer);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
   /// when windows are retained.
   Index waiting_place(Index leaving) const {
     const Index twin = sites_[leaving].twin;
-    return twin == no_index && options_.retain ? leaving : twin;
+    return twin == no_index && retain_ ? leaving : twin;
   }
 
   void relax_edges(Index vertex, Handed& handed) const;
@@ -174,7 +171,8 @@ class ListPropagation {
 
   const TriangleMesh& mesh_;
   const IntrinsicGeometry& geometry_;
-  Options options_;
+  bool retain_;
+  MergeLimits limits_;
   LargeVector<Site> sites_;
   LargeVector<VertexState> states_;
   std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none

@@ -92,12 +92,12 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
         along_edge(x, length, states_[vertex].distance, states_[vertex].arrival.error, states_[vertex].root));
   };
   if (envelope.is_continuous(states_[mesh_.from(canonical)].distance, states_[mesh_.to(canonical)].distance)) {
-    envelope.merge(options_.limits);
+    envelope.merge(limits_);
     return;  // ways along the edge are no shorter
   }
   follow_from(mesh_.from(canonical), 0);
   follow_from(mesh_.to(canonical), length);
-  envelope.merge(options_.limits);
+  envelope.merge(limits_);
 }
 
 ListPropagation::RetainedWindows ListPropagation::take_windows(Progress& progress) {
