@@ -23,6 +23,10 @@ plan two_way "${part[@]}" --source boundary --pattern two-way --spacing 60
 plan planar "${part[@]}" --pattern planar --direction 1,0,0 --spacing 40
 plan blade data/turbine_blade.off --unit cm --source boundary:0 --pattern spiral --spacing 40 --process spray --stand-off 150
 
+corners=(data/patch_100mm_a.off --source boundary --pattern spiral --spacing 5)
+plan smooth_off "${corners[@]}"
+plan smooth_on "${corners[@]}" --smooth 5
+
 picture part_with_path spiral --hide tool
 picture distance_and_isolines contour --hide tool,path,arrows --show isolines
 picture gap_of_distance_field spiral --color gap --hide tool,path,arrows
@@ -30,6 +34,8 @@ picture gap_of_parallel_planes planar --color gap --hide tool,path,arrows
 picture meander meander --hide tool
 picture two_way two_way --hide tool,arrows
 picture spray_path blade
+picture smooth_off smooth_off --view top --hide tool,arrows
+picture smooth_on smooth_on --view top --hide tool,arrows
 
 # sources of a few numbers: isolines of the distance from each
 sources_on_plate() { # NAME SOURCE

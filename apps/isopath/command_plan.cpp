@@ -32,6 +32,7 @@ struct PlanArguments {
   std::vector<double> direction;
   std::optional<double> spacing;
   std::optional<double> scallop;
+  std::optional<double> smooth;
   std::optional<double> clearance;
   std::optional<std::string> partition;
   std::optional<double> crease_angle;
@@ -94,6 +95,7 @@ Job job_of(const PlanArguments& given) {
   if (given.spacing || given.scallop) job.spacing = job.scallop = 0;
   replace(job.spacing, given.spacing);
   replace(job.scallop, given.scallop);
+  replace(job.smooth, given.smooth);
   replace(job.clearance, given.clearance);
   if (given.partition) job.partition.by = partition_of(*given.partition);
   if (given.crease_angle) job.partition.crease_angle = *given.crease_angle * std::numbers::pi / 180;
@@ -103,6 +105,21 @@ Job job_of(const PlanArguments& given) {
   if (given.no_report) job.report = false;
   job.validate();
   return job;
+}
+
+/// What smoothing opened, how it was closed, and what the other ways would have cost.
+std::string smoothing_text(const PlanResult& result) {
+  const SmoothingFigures& smoothing = *result.smoothing;
+  std::string text =
+      fmt::format("  smoothing        gaps up to {:.3f} × spacing", smoothing.gap_before / result.spacing);
+  if (!smoothing.repair) return text + "\n";
+  text += fmt::format(", closed by {}:\n", name_of(*smoothing.repair));
+  for (const GapRepairCost& way : smoothing.costs) {
+    text += fmt::format("    {:<14} {}{:.5g} mm, lifts {}, sharp corners {}, {:.4g} mm between passes\n",
+                        name_of(way.repair), way.planned ? "" : "about ", way.length, way.lifts, way.sharp_corners,
+                        way.spacing);
+  }
+  return text;
 }
 
 std::string text_summary(const PlanResult& result, const std::string& folder) {
@@ -120,6 +137,7 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
                         result.job.scallop, cusps.mean, cusps.p99, cusps.max);
   }
   if (!result.patches.empty()) text += fmt::format("  patches          {}\n", result.patches.size());
+  if (result.smoothing) text += smoothing_text(result);
   text += fmt::format("  pieces           {}, lifts {}, links {:.4g} mm\n", f.pieces, f.lifts, f.links_length);
   text += fmt::format("results in {}{}\n", folder, result.job.report ? "; look at its report.html" : "");
   return text;
@@ -163,6 +181,12 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
                   "Height of the cusps that the ball leaves everywhere, mm, instead of a spacing: passes come closer\n"
                   "over ridges and lie farther apart in hollows")
       ->check(number_above_0());
+  command
+      .add_option("--smooth", given.smooth,
+                  "Round the corners of passes: distances are smoothed over this width, mm, of which a spacing or two\n"
+                  "is usual; gaps that open are closed in the way that makes the shortest path")
+      ->check(number_from_0())
+      ->default_str("0: not at all");
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
       ->check(number_above_0())
       ->default_str("the spacing");

@@ -11,6 +11,7 @@
 #include "impact/curve_checks.h"
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/open_spots.h"
+#include "isopath/impact/ridge_passes.h"
 
 namespace isopath {
 namespace {
@@ -181,6 +182,35 @@ TEST(gap_repair, sees_with_each_round_what_the_whole_field_shows) {
     if ((plate.mesh.position(v) - place).norm() > 1.2 * w) continue;
     EXPECT_NEAR(part.field.value_at_vertex(v), whole.field.value_at_vertex(v), 2 * cover_accuracy * w);
   }
+}
+
+TEST(ridge_passes, cover_a_ridge_in_one_go) {
+  const test::Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
+  const std::vector<double> xs{1, 3, 5, 7, 8.5, 11.5, 13, 15, 17, 19};
+  const ImpactCurve before = test::parallel_lines(plate.linker, xs, 20);
+  const auto at = [&](double x, double y) { return plate.locator.nearest(Vec3(x, y, 0)).at; };
+  ImpactCurve curve = before;
+  // the second one lies on a pass
+  const std::vector<std::vector<SurfacePoint>> ridges{{at(10, 0), at(10, 12), at(10, 20)}, {at(3, 0), at(3, 20)}};
+  EXPECT_EQ(add_ridge_passes(plate.linker, plate.normals, ridges, curve, {.spacing = 2}), 1);
+  test::expect_valid(plate.mesh, curve);
+  EXPECT_EQ(test::pieces_of(curve), test::pieces_of(before));
+  EXPECT_NEAR(length_of(curve, MoveKind::cover) - length_of(before, MoveKind::cover), 20, 1e-6);
+  // to the ridge and back, and back along it
+  EXPECT_NEAR(length_of(curve, MoveKind::link) - length_of(before, MoveKind::link), 1.5 + 20 + 1.5, 1e-6);
+  EXPECT_GT(measure_gap(plate.mesh, before, 2).max, 2.9);
+  EXPECT_LT(measure_gap(plate.mesh, curve, 2).max, 2.01);
+}
+
+TEST(ridge_passes, leave_ridges_without_wide_gaps) {
+  const test::Plate plate{test::planar_grid(15, 15, 20, 20)};
+  const std::vector<double> xs{1, 3, 5, 7, 9, 11, 13, 15, 17, 19};
+  ImpactCurve curve = test::parallel_lines(plate.linker, xs, 20);
+  const std::size_t points = curve.points.size();
+  const std::vector<std::vector<SurfacePoint>> ridges{
+      {plate.locator.nearest(Vec3(0, 0, 0)).at, plate.locator.nearest(Vec3(20, 20, 0)).at}};
+  EXPECT_EQ(add_ridge_passes(plate.linker, plate.normals, ridges, curve, {.spacing = 2}), 0);
+  EXPECT_EQ(curve.points.size(), points);
 }
 
 }  // namespace

@@ -88,6 +88,8 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
   if (pick(5) > 0) job.pattern = static_cast<Pattern>(pick(5));
   job.planar_direction = Vec3(number(), -number(), 0);
   job.spacing = number();
+  job.smooth = number();
+  if (job.pattern == Pattern::planar || job.pattern == Pattern::double_spiral) job.smooth = 0;
   job.clearance = number();
   job.tool = {.process = static_cast<Process>(pick(3)),
               .stand_off = number(),
@@ -110,11 +112,13 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     Job job = random_job(rng, folder_);
     if (seed % 3 == 1) {
       job.pattern = seed % 2 == 0 ? Pattern::spiral : Pattern::double_spiral;
+      job.smooth = 0;
       job.blend = seed % 4 < 2 ? BlendForm::least : BlendForm::paper;
     }
     if (seed % 3 == 0) {
       if (job.pattern == Pattern::double_spiral) job.pattern.reset();
       job.sources = {SourceSpec{}};
+      job.smooth = 0;
       job.partition = {static_cast<PartitionBy>(rng() % 4), 0.001 + 3e-19 * static_cast<double>(rng() >> 2),
                        1 + 1e-18 * static_cast<double>(rng())};
     }
@@ -128,6 +132,7 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     ASSERT_EQ(again.blend, job.blend);
     ASSERT_EQ(again.planar_direction, job.planar_direction);
     ASSERT_EQ(again.spacing, job.spacing);
+    ASSERT_EQ(again.smooth, job.smooth);
     ASSERT_EQ(again.clearance, job.clearance);
     ASSERT_EQ(again.partition.by, job.partition.by);
     ASSERT_EQ(again.partition.crease_angle, job.partition.crease_angle);
@@ -151,7 +156,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   const auto expect_all = [](const std::string& message, const std::vector<const char*>& parts) {
     for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
   };
-  expect_all(complaint("spacings: 3\n"), {"line 2", "spacings", "unknown key", "spacing, scallop, clearance"});
+  expect_all(complaint("spacings: 3\n"), {"line 2", "spacings", "unknown key", "spacing, scallop, smooth, clearance"});
   expect_all(complaint("spacing: wide\n"), {"line 2", "spacing", "'wide'", "number"});
   expect_all(complaint("spacing: -1\n"), {"line 2", "spacing", "-1", "at least 0"});
   expect_all(complaint("spacing: [1]\n"), {"line 2", "spacing", "a list of 1", "number"});
@@ -174,6 +179,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("partition:\n  crease_angle: 4\n"), {"crease_angle", "4", "below π"});
   expect_all(complaint("sources: [boundary]\npartition:\n  by: medial\n"), {"partition", "medial", "'boundary'"});
   expect_all(complaint("scallop: 0.1\npartition:\n  by: both\n"), {"partition", "both", "scallop"});
+  expect_all(complaint("smooth: 2\npartition:\n  by: both\n"), {"partition", "both", "smoothing"});
   expect_all(complaint("tool: 5\n"), {"line 2", "tool", "'5'", "mapping"});
   expect_all(complaint("tool:\n  process: knit\n"), {"line 3", "tool.process", "'knit'", "spray, mill, grind"});
   expect_all(complaint("tool:\n  diameter: 3\n"), {"line 3", "tool.diameter", "unknown key", "ball_diameter"});

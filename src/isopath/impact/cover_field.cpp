@@ -45,6 +45,10 @@ CoverSource cover_source(const TriangleMesh& mesh, const ImpactCurve& curve, con
 
 }  // namespace
 
+SourceSet cover_elements(const TriangleMesh& mesh, const ImpactCurve& curve) {
+  return cover_source(mesh, curve, [](Index) { return true; }).elements;
+}
+
 CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
                                const IntrinsicGeometry* metric) {
   CoverSource source = cover_source(mesh, curve, [](Index) { return true; });

@@ -17,6 +17,13 @@ struct CoverField {
 /// Bound on the error of these distances, in spacings: no gap is off by more than twice this.
 inline constexpr double cover_accuracy = 1e-4;
 
+/// The covering moves of a curve as source: true segments. `curve_point`, where it is not null, becomes what it is in
+/// CoverField. Throws Error(no_plan) when the curve covers nothing.
+SourceSet cover_source(const TriangleMesh& mesh, const ImpactCurve& curve, std::vector<Index>* curve_point = nullptr);
+
+/// The covering moves of a curve, as true segments. Throws Error(no_plan) when it covers nothing.
+SourceSet cover_elements(const TriangleMesh& mesh, const ImpactCurve& curve);
+
 /// The distance with `cover_accuracy`, in space or in a metric. Throws Error(no_plan) when the curve covers nothing,
 /// Error(cancelled) on request.
 CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,

@@ -26,44 +26,6 @@ constexpr double resolution = 0.01;
 /// What a bump leaves open beside it is closed in the next round.
 constexpr int most_rounds = 5;
 
-/// Ways round wide open places.
-class DetourBuilder {
- public:
-  DetourBuilder(const TriangleMesh& mesh, const SmoothNormals& normals, const ImpactCurve& curve,
-                const CoverField& cover)
-      : mesh_(mesh), normals_(normals), curve_(curve), cover_(cover) {}
-
-  /// Out of the curve along the shortest way, round the contour, and back.
-  Replacement around(const Contour& contour) const {
-    const SurfacePoint& start = contour.points.front();
-    std::vector<SurfacePoint> way_back = cover_.field.shortest_path(start);
-    Replacement detour;
-    // asked at the foot: where two ways from the start are equally long, its own nearest root may be the other one's
-    detour.first = cover_.curve_point[cover_.field.nearest(way_back.back()).root];
-    detour.last = detour.first + 1;
-    const Index piece = curve_.points[detour.first].piece;
-    const auto add = [&](const SurfacePoint& at, MoveKind kind) {
-      detour.points.push_back({kind, at, position_of(mesh_, at), normals_.at(at), piece});
-    };
-    add(way_back.back(), MoveKind::cover);  // on the curve itself
-    for (auto p = way_back.rbegin() + 1; p != way_back.rend(); ++p) add(*p, MoveKind::link);
-    for (std::size_t i = 1; i < contour.points.size(); ++i) add(contour.points[i], MoveKind::cover);
-    if (contour.closed) {
-      add(start, MoveKind::cover);
-    } else {
-      for (std::size_t i = contour.points.size() - 1; i-- > 0;) add(contour.points[i], MoveKind::link);
-    }
-    for (std::size_t i = 1; i < way_back.size(); ++i) add(way_back[i], MoveKind::link);
-    return detour;
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  const SmoothNormals& normals_;
-  const ImpactCurve& curve_;
-  const CoverField& cover_;
-};
-
 /// The distance from the cover, with what is known of where it stays below a level: no isoline hides in those faces.
 class BoundedField final : public SurfaceFunction {
  public:
@@ -103,36 +65,6 @@ std::vector<Contour> loops_in(const TriangleMesh& mesh, const ExactField& field,
       kept.push_back(std::move(set.contours[k]));
   }
   return kept;
-}
-
-/// Puts replacements in; of those that overlap only the first. Returns how many were.
-int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements) {
-  const double tolerance = mesh.tolerance().length;
-  std::stable_sort(replacements.begin(), replacements.end(), [](const Replacement& a, const Replacement& b) {
-    return std::tie(a.first, a.last) < std::tie(b.first, b.last);
-  });
-  std::vector<ImpactPoint> points;
-  int count = 0;
-  Index next = 0;  // the first point not dealt with
-  for (const Replacement& r : replacements) {
-    if (r.first + 1 < next) continue;
-    points.insert(points.end(), curve.points.begin() + next, curve.points.begin() + r.first + 1);
-    points.insert(points.end(), r.points.begin(), r.points.end());
-    next = std::max(r.first + 1, r.last);
-    ++count;
-  }
-  points.insert(points.end(), curve.points.begin() + next, curve.points.end());
-  curve.points.clear();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool inside = !curve.points.empty() && i + 1 < points.size() && points[i].kind != MoveKind::lift &&
-                        points[i + 1].kind != MoveKind::lift;
-    // a point that says nothing new goes, unless the way needs it to change faces
-    const bool idle = inside && (points[i].position - curve.points.back().position).norm() <= tolerance &&
-                      curve.points.back().at.valid() &&
-                      common_face(mesh, curve.points.back().at, points[i + 1].at) != no_index;
-    if (!idle) curve.points.push_back(points[i]);
-  }
-  return count;
 }
 
 /// Places in a grid of cells, to ask what is near.
@@ -240,10 +172,9 @@ class GapCloser {
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }
     loops = farthest > 0;
-    const DetourBuilder builder(mesh_, normals_, curve_, cover);
     for (const Contour& contour : loops_in(mesh_, cover.field, w, std::move(wide), farthest, progress_)) {
       progress_.checkpoint();
-      replacements.push_back(builder.around(contour));
+      replacements.push_back(detour_along(contour, linker_, normals_, curve_, cover));
     }
     return replacements;
   }
@@ -258,6 +189,60 @@ class GapCloser {
 };
 
 }  // namespace
+
+Replacement detour_along(const Contour& contour, const SurfaceLinker& linker, const SmoothNormals& normals,
+                         const ImpactCurve& curve, const CoverField& cover) {
+  const TriangleMesh& mesh = linker.mesh();
+  const SurfacePoint& start = contour.points.front();
+  std::vector<SurfacePoint> way_back = cover.field.shortest_path(start);
+  Replacement detour;
+  // asked at the foot: where two ways from the start are equally long, its own nearest root may be the other one's
+  detour.first = cover.curve_point[cover.field.nearest(way_back.back()).root];
+  detour.last = detour.first + 1;
+  const Index piece = curve.points[detour.first].piece;
+  const auto add = [&](const SurfacePoint& at, MoveKind kind) {
+    detour.points.push_back({kind, at, position_of(mesh, at), normals.at(at), piece});
+  };
+  add(way_back.back(), MoveKind::cover);  // on the curve itself
+  for (auto p = way_back.rbegin() + 1; p != way_back.rend(); ++p) add(*p, MoveKind::link);
+  for (std::size_t i = 1; i < contour.points.size(); ++i) add(contour.points[i], MoveKind::cover);
+  if (contour.closed) {
+    add(start, MoveKind::cover);
+  } else {
+    for (std::size_t i = contour.points.size() - 1; i-- > 0;) add(contour.points[i], MoveKind::link);
+  }
+  for (std::size_t i = 1; i < way_back.size(); ++i) add(way_back[i], MoveKind::link);
+  return detour;
+}
+
+int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements) {
+  const double tolerance = mesh.tolerance().length;
+  std::stable_sort(replacements.begin(), replacements.end(), [](const Replacement& a, const Replacement& b) {
+    return std::tie(a.first, a.last) < std::tie(b.first, b.last);
+  });
+  std::vector<ImpactPoint> points;
+  int count = 0;
+  Index next = 0;  // the first point not dealt with
+  for (const Replacement& r : replacements) {
+    if (r.first + 1 < next) continue;
+    points.insert(points.end(), curve.points.begin() + next, curve.points.begin() + r.first + 1);
+    points.insert(points.end(), r.points.begin(), r.points.end());
+    next = std::max(r.first + 1, r.last);
+    ++count;
+  }
+  points.insert(points.end(), curve.points.begin() + next, curve.points.end());
+  curve.points.clear();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool inside = !curve.points.empty() && i + 1 < points.size() && points[i].kind != MoveKind::lift &&
+                        points[i + 1].kind != MoveKind::lift;
+    // a point that says nothing new goes, unless the way needs it to change faces
+    const bool idle = inside && (points[i].position - curve.points.back().position).norm() <= tolerance &&
+                      curve.points.back().at.valid() &&
+                      common_face(mesh, curve.points.back().at, points[i + 1].at) != no_index;
+    if (!idle) curve.points.push_back(points[i]);
+  }
+  return count;
+}
 
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                     const GapLimits& limits, Progress& progress) {

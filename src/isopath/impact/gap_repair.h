@@ -1,7 +1,12 @@
 #pragma once
 
+#include <vector>
+
+#include "isopath/contour/isolines.h"
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/impact/bump.h"
+#include "isopath/impact/cover_field.h"
 #include "isopath/impact/impact_curve.h"
 #include "isopath/impact/surface_curve.h"
 #include "isopath/mesh/normals.h"
@@ -20,10 +25,18 @@ struct GapLimits {
 };
 
 /// Closes what passes leave open where fronts meet: at saddles of the field, in sharp corners, inside the last pass
-/// (paper ch. 9.3). Towards a small open spot the curve makes a bump; around a wide one it makes a loop: it leaves
-/// along the shortest way, goes round, and comes back. What is left or opened beside them is closed in the next of up
-/// to five rounds. Returns the number of bumps and loops.
+/// (paper ch. 9.3). Towards a small open spot the curve makes a bump, the paper's fishtail; around a wide one it makes
+/// a loop: it leaves along the shortest way, goes round, and comes back. What is left or opened beside them is closed
+/// in the next of up to five rounds. Returns the number of bumps and loops.
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                     const GapLimits& limits, Progress& progress = Progress::none());
+
+/// A way out of the curve to a contour, along it, and back: round a closed one, along an open one as a link. Its first
+/// point should be the one nearest to the curve.
+Replacement detour_along(const Contour& contour, const SurfaceLinker& linker, const SmoothNormals& normals,
+                         const ImpactCurve& curve, const CoverField& cover);
+
+/// Puts replacements into a curve; of those that overlap only the first. Returns how many were.
+int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements);
 
 }  // namespace isopath

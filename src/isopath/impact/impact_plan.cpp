@@ -90,15 +90,19 @@ class Planner {
           fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
     }
     plan.curve = assembly.take();
-    progress_.stage("wide gaps");
-    const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
-    close_wide_gaps(linker_, normals_, plan.curve,
-                    {options_.spacing, as_they_are ? widest_corner_gap : widest_gap, options_.metric}, progress_);
+    if (options_.close_gaps) close_gaps(plan.curve);
     plan.contours = std::move(passes_.contours);
     return plan;
   }
 
  private:
+  void close_gaps(ImpactCurve& curve) {
+    progress_.stage("wide gaps");
+    const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
+    close_wide_gaps(linker_, normals_, curve,
+                    {options_.spacing, as_they_are ? widest_corner_gap : widest_gap, options_.metric}, progress_);
+  }
+
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.
   void choose() {
     const double spacing = pass_allowance * options_.spacing;

@@ -26,8 +26,9 @@ std::string_view name_of(Pattern pattern);
 
 struct ImpactOptions {
   Pattern pattern = Pattern::spiral;
-  double spacing = 0;    ///< distance between neighbouring passes, mm; required, > 0
-  double clearance = 0;  ///< height of lifts above the surface, mm; 0 takes the spacing
+  double spacing = 0;      ///< distance between neighbouring passes, mm; required, > 0
+  double clearance = 0;    ///< height of lifts above the surface, mm; 0 takes the spacing
+  bool close_gaps = true;  ///< by loops, see gap_repair.h
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.
   const IntrinsicGeometry* metric = nullptr;
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit

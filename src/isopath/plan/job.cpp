@@ -79,6 +79,10 @@ void validate_partition(const Job& job) {
     refuse("partition", fmt::format("{} with a scallop", name_of(job.partition.by)),
            "patches are planned with a spacing: give one instead of the scallop's height");
   }
+  if (job.smooth > 0) {
+    refuse("partition", fmt::format("{} with smoothing", name_of(job.partition.by)),
+           "the distances of patches are not smoothed: leave one of them out");
+  }
   if (job.sources != std::vector{SourceSpec{}}) {
     refuse("partition",
            fmt::format("{} with source '{}'", name_of(job.partition.by),
@@ -179,6 +183,13 @@ void Job::validate() const {
   if (!planar_direction.allFinite() || planar_direction.isZero(0)) {
     refuse("planar_direction",
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
+  }
+  if (!(smooth >= 0) || smooth == infinity) refuse("smooth", fmt::format("{}, allowed is 0 or more", smooth));
+  if (smooth > 0 && pattern == Pattern::planar) {
+    refuse("smooth", fmt::format("{}", smooth), "parallel planes have nothing to smooth: leave it out");
+  }
+  if (smooth > 0 && (blend || pattern == Pattern::double_spiral)) {
+    refuse("smooth", fmt::format("{}", smooth), "blended distances and double spirals are not smoothed: leave it out");
   }
   validate_scallop(*this);
   validate_partition(*this);

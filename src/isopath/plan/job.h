@@ -35,6 +35,9 @@ struct Job {
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
   /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.
   double scallop = 0;
+  /// Corners of the isolines are rounded by smoothing the distances over this width, mm, see `smoothed_distances`; 0
+  /// keeps them exact. Not for planar passes and double spirals, and not with a blend or a partition.
+  double smooth = 0;
   double clearance = 0;  ///< height of lifts above the surface; 0 takes the spacing
   /// Patches that are planned one by one, each from its own border: then the sources are `auto`, and the spacing is
   /// not given by a scallop.

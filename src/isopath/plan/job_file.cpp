@@ -101,6 +101,7 @@ Job read_job(const fs::path& path) {
   fields.read("planar_direction", job.planar_direction);
   fields.read("spacing", job.spacing, {.least = 0});
   fields.read("scallop", job.scallop, {.least = 0});
+  fields.read("smooth", job.smooth, {.least = 0});
   fields.read("clearance", job.clearance, {.least = 0});
   read_partition(fields.section("partition"), job.partition);
   read_tool(fields.section("tool"), job.tool);
@@ -134,6 +135,7 @@ std::string job_yaml(const Job& job, const fs::path& folder) {
   line("planar_direction", vector_text(job.planar_direction));
   line("spacing", job.spacing);
   line("scallop", job.scallop);
+  line("smooth", job.smooth);
   line("clearance", job.clearance);
   text += fmt::format("partition:\n  by: {}\n  crease_angle: {}\n  unevenness: {}\n", name_of(job.partition.by),
                       job.partition.crease_angle, job.partition.unevenness);

@@ -38,6 +38,23 @@ nlohmann::ordered_json patches_json(const PlanResult& result) {
   return patches;
 }
 
+nlohmann::ordered_json smoothing_json(const PlanResult& result) {
+  const SmoothingFigures& smoothing = *result.smoothing;
+  nlohmann::ordered_json json = {{"width", result.job.smooth},
+                                 {"gap_before_repair", smoothing.gap_before / result.spacing},
+                                 {"repair", smoothing.repair ? name_of(*smoothing.repair) : "none"},
+                                 {"ways", nlohmann::ordered_json::array()}};
+  for (const GapRepairCost& way : smoothing.costs) {
+    json["ways"].push_back({{"repair", name_of(way.repair)},
+                            {"length", way.length},
+                            {"lifts", way.lifts},
+                            {"sharp_corners", way.sharp_corners},
+                            {"spacing", way.spacing},
+                            {"planned", way.planned}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string summary_json(const PlanResult& result) {
@@ -74,6 +91,7 @@ std::string summary_json(const PlanResult& result) {
                   {"warnings", result.warnings}};
   if (!result.patches.empty()) summary["patches"] = patches_json(result);
   if (result.scallop) summary["scallop"] = scallop_json(result);
+  if (result.smoothing) summary["smoothing"] = smoothing_json(result);
   // a file may have any name, JSON only holds UTF-8
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -73,6 +73,23 @@ ReportTable patches_table(const PlanResult& result) {
   return table;
 }
 
+ReportTable smoothing_table(const PlanResult& result) {
+  const SmoothingFigures& smoothing = *result.smoothing;
+  ReportTable table{"Smoothing",
+                    {{"width", text(result.job.smooth), "mm", "Standard deviation of the averaging."},
+                     {"widest gap before repair", text(smoothing.gap_before / result.spacing), "× spacing"},
+                     {"gaps closed by", smoothing.repair ? std::string(name_of(*smoothing.repair)) : "nothing to close",
+                      "", "The way that makes the shortest path, of those below."}}};
+  for (const GapRepairCost& way : smoothing.costs) {
+    table.rows.push_back({fmt::format("with {}", name_of(way.repair)),
+                          fmt::format("{}{}", way.planned ? "" : "about ", text(way.length)), "mm",
+                          way.planned ? fmt::format("{} lifts, {} sharp corners, {} mm between passes.", way.lifts,
+                                                    way.sharp_corners, text(way.spacing))
+                                      : "Estimated only, as it is too long anyway."});
+  }
+  return table;
+}
+
 /// The number of its patch at every vertex that is shown, counted from 1.
 std::vector<double> patches_at_vertices(const PlanResult& result) {
   const RefinedMesh& shown = result.display.refined;
@@ -104,7 +121,9 @@ std::string plan_report(const PlanResult& result) {
   data.mesh = &result.part.mesh;
   data.shown = &result.display.refined;
   data.scalars = {
-      {.name = result.pattern == Pattern::planar ? "height" : "distance",
+      {.name = result.pattern == Pattern::planar ? "height"
+               : result.smoothing                ? "smoothed distance"
+                                                 : "distance",
        .unit = "mm",
        .values = result.display.distances},
       {.name = "gap", .unit = "mm", .values = result.display.gap, .least = 0, .greatest = 2 * w, .limit = 1.02 * w}};
@@ -128,6 +147,7 @@ std::string plan_report(const PlanResult& result) {
   data.tables = {figures_table(result), coverage_table(result)};
   if (result.scallop) data.tables.push_back(scallop_table(result));
   if (!result.patches.empty()) data.tables.push_back(patches_table(result));
+  if (result.smoothing) data.tables.push_back(smoothing_table(result));
   data.histograms = {{.title = "Gap over the surface",
                       .unit = "mm",
                       .bin_width = w / 20,

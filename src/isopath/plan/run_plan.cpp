@@ -17,11 +17,13 @@
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/level_spiral.h"
 #include "isopath/plan/auto_pattern.h"
+#include "isopath/plan/gap_choice.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
 #include "isopath/plan/nested_plan.h"
 #include "isopath/plan/part_checks.h"
 #include "isopath/plan/scallop_metric.h"
+#include "isopath/plan/smooth_part.h"
 #include "isopath/tool/make_tool_path.h"
 
 namespace isopath {
@@ -112,20 +114,51 @@ constexpr double field_accuracy = 1e-7;
 struct Field {
   std::unique_ptr<SurfaceFunction> function;
   std::vector<double> at_vertices;
-  double spacing = 0;  ///< of nested levels; 0 where the function is not made for such
+  double spacing = 0;                                  ///< of nested levels; 0 where the function is not made for such
+  std::vector<std::vector<SurfacePoint>> ridges = {};  ///< see FieldSamples; none where nothing was smoothed
 };
 
-Field field_of(const Job& job, const Part& part, const IntrinsicGeometry* metric, Progress& progress) {
+ExactField distances_on(const Part& part, const Job& job, const std::optional<IntrinsicGeometry>& metric,
+                        double accuracy, Progress& progress) {
+  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress);
+  const ExactFieldOptions options{.accuracy = accuracy};
+  return metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
+                : ExactField::compute(part.mesh, sources, options, progress);
+}
+
+/// Puts a finer mesh of the same surface in the part's place, and the metric's lengths on it.
+void refine_part(RefinedMesh refined, Part& part, std::optional<IntrinsicGeometry>& metric) {
+  std::vector<double> lengths;
+  if (metric) lengths = lengths_in(part.mesh, *metric, refined);
+  part.mesh = std::move(refined.mesh);
+  if (metric) metric.emplace(part.mesh, lengths);
+}
+
+/// The smoothed distances, on a part that is made fine enough for them. The field of the part as it is must be exact,
+/// for the medial axis.
+Field smoothed_field(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
+  const double width = result.job.smooth;
+  refine_part(refine_for_smoothing(result.part.mesh, result.spacing, width), result.part, metric);
+  FieldSamples samples =
+      sample_for_smoothing(distances_on(result.part, result.job, metric, 0, progress), result.spacing, progress);
+  refine_part(std::move(samples.refined), result.part, metric);
+  const IntrinsicGeometry* geometry = metric ? &*metric : nullptr;
+  std::vector<double> values = smoothed_distances(result.part.mesh, geometry, samples.distances, width, progress);
+  auto function = std::make_unique<VertexField>(result.part.mesh, values);
+  return {.function = std::move(function), .at_vertices = std::move(values), .ridges = std::move(samples.ridges)};
+}
+
+Field field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
   progress.stage("distance field");
-  if (job.pattern == Pattern::planar) {
-    auto height = std::make_unique<VertexField>(height_field(part.mesh, job.planar_direction));
+  const TriangleMesh& mesh = result.part.mesh;
+  if (result.job.pattern == Pattern::planar) {
+    auto height = std::make_unique<VertexField>(height_field(mesh, result.job.planar_direction));
     std::vector<double> values(height->values().begin(), height->values().end());
     return {std::move(height), std::move(values)};
   }
-  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress);
-  const ExactFieldOptions options{.accuracy = field_accuracy * part.mesh.size()};
-  auto exact = std::make_unique<ExactField>(metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
-                                                   : ExactField::compute(part.mesh, sources, options, progress));
+  if (result.job.smooth > 0) return smoothed_field(result, metric, progress);
+  auto exact = std::make_unique<ExactField>(
+      distances_on(result.part, result.job, metric, field_accuracy * mesh.size(), progress));
   std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
   return {std::move(exact), std::move(values)};
 }
@@ -165,7 +198,8 @@ Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
   for (int round = 0; round < 2; ++round) {
     field.function.reset();
     mesh = std::move(fine);
-    field = field_of(result.job, result.part, nullptr, progress);
+    std::optional<IntrinsicGeometry> in_space;
+    field = field_of(result, in_space, progress);
     nested = nested_field(result.job, static_cast<const ExactField&>(*field.function), spacing, progress);
     fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
     if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
@@ -187,18 +221,26 @@ ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& p
 void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry* metric, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   ImpactOptions options{.spacing = result.spacing, .clearance = result.job.clearance, .metric = metric};
+  const bool smooth = result.job.smooth > 0;
   if (wants_nested_levels(result.job)) {
     const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
     options.pattern = result.pattern;
     result.impact = field.spacing > 0 && is_spiral ? plan_nested(result, field, progress)
                                                    : plan_impact(mesh, *field.function, options, progress);
   } else if (result.job.pattern) {
-    options.pattern = result.pattern = *result.job.pattern;
-    result.impact = plan_impact(mesh, *field.function, options, progress);
+    options.pattern = *result.job.pattern;
+    if (!smooth) result.impact = plan_impact(mesh, *field.function, options, progress);
   } else {
     ChosenPlan chosen = plan_by_part(mesh, *field.function, field.at_vertices, options, progress);
-    result.pattern = chosen.pattern;
+    options.pattern = chosen.pattern;
     result.impact = std::move(chosen.plan);
+  }
+  result.pattern = options.pattern;
+  if (smooth) {
+    RepairedPlan repaired =
+        plan_with_repair(static_cast<const VertexField&>(*field.function), options, field.ridges, progress);
+    result.impact = std::move(repaired.plan);
+    result.smoothing = {repaired.gap_before, repaired.chosen, std::move(repaired.costs)};
   }
   append(result.warnings, result.impact.warnings);
 }
@@ -247,9 +289,9 @@ void measure(PlanResult& result, const IntrinsicGeometry* metric, Progress& prog
 }
 
 /// All of the part by one field.
-void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress) {
+void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, StageClock& clock, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
-  Field field = field_of(result.job, result.part, metric, progress);
+  Field field = field_of(result, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
   check_facing(mesh, field.at_vertices, result.job.tool);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
@@ -259,7 +301,7 @@ void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock&
   }
   clock.ends("field");
 
-  plan_curve(result, field, metric, progress);
+  plan_curve(result, field, metric ? &*metric : nullptr, progress);
   result.distances = std::move(field.at_vertices);
   if (result.job.report) {
     result.display.refined = refine_for_display(mesh, result.spacing);
@@ -312,13 +354,13 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (auto warning = warning_of_size(mesh.size())) result.warnings.push_back(*std::move(warning));
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
-  const std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
-  const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
+  std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
   if (job.partition.by != PartitionBy::none) {
     plan_by_patches(result, clock, progress);
   } else {
-    plan_whole(result, metric, clock, progress);
+    plan_whole(result, warped, clock, progress);
   }
+  const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
 
   measure(result, metric, progress);
   result.figures = path_figures(result.impact.curve, result.spacing);

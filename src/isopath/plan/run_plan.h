@@ -8,6 +8,7 @@
 #include "isopath/impact/gap.h"
 #include "isopath/impact/impact_plan.h"
 #include "isopath/plan/display_surface.h"
+#include "isopath/plan/gap_choice.h"
 #include "isopath/plan/job.h"
 #include "isopath/plan/load_part.h"
 #include "isopath/plan/output_folder.h"
@@ -31,13 +32,21 @@ struct ScallopFigures {
   double gouged_fraction = 0;
 };
 
+/// What smoothing did to the path, and what its gaps cost.
+struct SmoothingFigures {
+  double gap_before = 0;             ///< the widest one that smoothing left, mm
+  std::optional<GapRepair> repair;   ///< the way they were closed; none where they were not too wide
+  std::vector<GapRepairCost> costs;  ///< of all ways that were considered
+};
+
 /// All that a run found. Lengths in mm.
 struct PlanResult {
   Job job;  ///< as it was given: where it leaves a choice to the planner, the choice is in this result
   Part part;
   double spacing = 0;  ///< with a scallop: the pitch in the ball's metric, which is that on flat places
   Pattern pattern = Pattern::spiral;
-  std::vector<double> distances;  ///< at every vertex: from the sources, or the height for planar; infinity: unreached
+  std::vector<double> distances;  ///< at every vertex: from the sources, smoothed where the job says so, or the height
+                                  ///< for planar; infinity: unreached
   ImpactPlan impact;
   DisplaySurface display;             ///< empty where the job wants no report
   std::vector<PatchFigures> patches;  ///< in the order of work, where the job divides the part
@@ -46,7 +55,8 @@ struct PlanResult {
   /// Covering length × spacing / area: 1 is the least that evenly spaced passes need. With a scallop, both in the
   /// ball's metric.
   double length_ratio = 0;
-  std::optional<ScallopFigures> scallop;  ///< where the job asks for one
+  std::optional<ScallopFigures> scallop;      ///< where the job asks for one
+  std::optional<SmoothingFigures> smoothing;  ///< where the job asks for it
   PathFigures figures;
   ToolPath tool;
   std::vector<OutputFile> programs;  ///< of `make_programs`

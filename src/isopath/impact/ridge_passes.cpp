@@ -1,0 +1,85 @@
+#include "isopath/impact/ridge_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "isopath/contour/isolines.h"
+#include "isopath/impact/cover_field.h"
+#include "isopath/mesh/surface_walk.h"
+
+namespace isopath {
+namespace {
+
+/// A ridge as a curve on the surface with a point every tenth of a spacing.
+std::vector<SurfacePoint> fine_points(const SurfaceLinker& linker, std::span<const SurfacePoint> ridge,
+                                      double spacing) {
+  const TriangleMesh& mesh = linker.mesh();
+  SurfaceCurve curve;
+  for (const SurfacePoint& point : ridge) linker.extend(curve, point);
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const Index face = i > 0 ? common_face(mesh, curve.points[i - 1], curve.points[i]) : no_index;
+    if (face != no_index) {
+      const Vec3 from = express_in(mesh, curve.points[i - 1], face).barycentric;
+      const Vec3 to = express_in(mesh, curve.points[i], face).barycentric;
+      const double length = (curve.positions[i] - curve.positions[i - 1]).norm();
+      const int parts = static_cast<int>(std::min(1000.0, std::ceil(10 * length / spacing)));
+      for (int k = 1; k < parts; ++k) points.push_back({face, from + (to - from) * (static_cast<double>(k) / parts)});
+    }
+    points.push_back(curve.points[i]);
+  }
+  return points;
+}
+
+/// The stretches of a ridge that are worth a pass: from one wide gap to the next while these are no farther apart than
+/// two spacings, and out at both ends until the gaps grow again; each starts where it is nearer to the curve.
+std::vector<Contour> wide_stretches(const TriangleMesh& mesh, const ExactField& distance,
+                                    std::vector<SurfacePoint> points, double spacing, double wide) {
+  std::vector<double> gap;
+  std::vector<double> arc;
+  for (const SurfacePoint& point : points) {
+    gap.push_back(2 * distance.value(point));
+    const std::size_t i = arc.size();
+    arc.push_back(i == 0 ? 0 : arc.back() + (position_of(mesh, point) - position_of(mesh, points[i - 1])).norm());
+  }
+  std::vector<Contour> stretches;
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(gap[i] > wide)) continue;
+    std::size_t last = i;
+    for (std::size_t k = i + 1; k < n && arc[k] - arc[last] <= 2 * spacing; ++k) {
+      if (gap[k] > wide) last = k;
+    }
+    std::size_t begin = i;
+    while (begin > 0 && gap[begin - 1] < gap[begin]) --begin;
+    while (last + 1 < n && gap[last + 1] < gap[last]) ++last;
+    if (last > begin) {
+      Contour& stretch = stretches.emplace_back();
+      stretch.points.assign(points.begin() + begin, points.begin() + last + 1);
+      if (gap[last] < gap[begin]) std::reverse(stretch.points.begin(), stretch.points.end());
+    }
+    i = last;
+  }
+  return stretches;
+}
+
+}  // namespace
+
+int add_ridge_passes(const SurfaceLinker& linker, const SmoothNormals& normals,
+                     std::span<const std::vector<SurfacePoint>> ridges, ImpactCurve& curve, const GapLimits& limits,
+                     Progress& progress) {
+  const TriangleMesh& mesh = linker.mesh();
+  const CoverField cover = distance_from_cover(mesh, curve, limits.spacing, progress, limits.metric);
+  std::vector<Replacement> passes;
+  for (const std::vector<SurfacePoint>& ridge : ridges) {
+    for (const Contour& stretch : wide_stretches(mesh, cover.field, fine_points(linker, ridge, limits.spacing),
+                                                 limits.spacing, limits.widest * limits.spacing)) {
+      progress.checkpoint();
+      passes.push_back(detour_along(stretch, linker, normals, curve, cover));
+    }
+  }
+  return replace(mesh, curve, std::move(passes));
+}
+
+}  // namespace isopath

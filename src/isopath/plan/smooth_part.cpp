@@ -1,0 +1,131 @@
+#include "isopath/plan/smooth_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "isopath/contour/medial_axis.h"
+#include "isopath/field/refine_for_field.h"
+#include "isopath/field/smooth_field.h"
+#include "isopath/field/surface_laplacian.h"
+
+namespace isopath {
+namespace {
+
+constexpr double edges_over_length = 0.5;
+/// Corners rounded by less than that are corners to the tool.
+constexpr double least_width_over_spacing = 0.25;
+/// As many triangles as a large part has anyway.
+constexpr Index most_smoothed_triangles = 600000;
+constexpr double interpolation_over_spacing = 0.05;
+/// Most levels of refinement where the field has a kink: the triangles are half a spacing wide before it.
+constexpr int most_levels = 3;
+constexpr double width_over_distance = 0.5;
+/// Twigs of the medial axis shorter than this times the clearance are no ridges.
+constexpr double shortest_twig = 0.5;
+
+/// Finds points of the old mesh on the refined one.
+class OnRefined {
+ public:
+  OnRefined(const TriangleMesh& mesh, const RefinedMesh& refined)
+      : mesh_(mesh), refined_(refined), first_(static_cast<std::size_t>(mesh.n_faces()) + 1, 0) {
+    for (const Index old : refined.old_face) ++first_[old + 1];
+    for (std::size_t f = 1; f < first_.size(); ++f) first_[f] += first_[f - 1];
+    parts_.resize(refined.old_face.size());
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    for (Index f = 0; f < refined.mesh.n_faces(); ++f) parts_[next[refined.old_face[f]]++] = f;
+  }
+
+  /// The part of the point's face that it lies deepest in.
+  SurfacePoint at(const SurfacePoint& point) const {
+    SurfacePoint best;
+    double depth = -infinity;
+    for (Index k = first_[point.face]; k < first_[point.face + 1]; ++k) {
+      const Vec3 weights = weights_in(parts_[k], point);
+      if (!(weights.minCoeff() > depth)) continue;
+      depth = weights.minCoeff();
+      best = {parts_[k], weights};
+    }
+    best.barycentric = best.barycentric.cwiseMax(0.0);
+    best.barycentric /= best.barycentric.sum();
+    return best;
+  }
+
+ private:
+  /// Barycentric coordinates in a part, from those in the whole face: the same combination of the part's corners.
+  Vec3 weights_in(Index part, const SurfacePoint& point) const {
+    Vec3 corner[3];
+    for (int i = 0; i < 3; ++i) {
+      const SurfacePoint& old = refined_.on_old[refined_.mesh.triangle(part)[i]];
+      corner[i] = express_in(mesh_, old, point.face).barycentric;
+    }
+    const double whole = corner[0].dot(corner[1].cross(corner[2]));
+    const Vec3& p = point.barycentric;
+    return Vec3(p.dot(corner[1].cross(corner[2])), p.dot(corner[2].cross(corner[0])),
+                p.dot(corner[0].cross(corner[1]))) /
+           whole;
+  }
+
+  const TriangleMesh& mesh_;
+  const RefinedMesh& refined_;
+  std::vector<Index> first_;
+  std::vector<Index> parts_;
+};
+
+}  // namespace
+
+RefinedMesh refine_for_smoothing(const TriangleMesh& mesh, double spacing, double width) {
+  const double length = std::clamp(width, least_width_over_spacing * spacing, spacing);
+  return split_long_edges(mesh, edges_over_length * length, std::max(most_smoothed_triangles, mesh.n_faces()));
+}
+
+std::vector<double> lengths_in(const TriangleMesh& mesh, const IntrinsicGeometry& metric, const RefinedMesh& refined) {
+  const TriangleMesh& finer = refined.mesh;
+  std::vector<double> lengths(finer.n_edges());
+  for (Index e = 0; e < finer.n_edges(); ++e) {
+    const Index h = finer.halfedge_of(e);
+    const Index old = refined.old_face[h / 3];
+    const auto place = [&](Index vertex) {
+      return metric.in_frame(3 * old, express_in(mesh, refined.on_old[vertex], old).barycentric);
+    };
+    lengths[e] = (place(finer.to(h)) - place(finer.from(h))).norm();
+  }
+  return lengths;
+}
+
+FieldSamples sample_for_smoothing(const ExactField& field, double spacing, Progress& progress) {
+  FieldSamples samples;
+  RefinedField refined = refine_for_field(
+      field.mesh(), field, {.tolerance = interpolation_over_spacing * spacing, .max_levels = most_levels}, progress);
+  samples.refined = std::move(refined.refined);
+  samples.distances = std::move(refined.value);
+  progress.stage("medial axis");
+  const OnRefined on_refined(field.mesh(), samples.refined);
+  const BisectorGraph axis = medial_axis(field, {.prune = shortest_twig, .chord_tolerance = 0.01 * spacing}, progress);
+  for (const BisectorGraph::Arc& arc : axis.arcs) {
+    std::vector<SurfacePoint>& ridge = samples.ridges.emplace_back();
+    for (const BisectorPoint& point : arc.points) ridge.push_back(on_refined.at(point.point));
+  }
+  return samples;
+}
+
+std::vector<double> smoothed_distances(const TriangleMesh& mesh, const IntrinsicGeometry* metric,
+                                       const std::vector<double>& distances, double width, Progress& progress) {
+  progress.stage("smoothing");
+  double farthest = 0;
+  for (const double distance : distances) {
+    if (std::isfinite(distance)) farthest = std::max(farthest, distance);
+  }
+  if (!(farthest > 0)) return distances;
+  width = std::min(width, width_over_distance * farthest);  // more has no effect
+  std::vector<double> local;
+  local.reserve(distances.size());
+  for (const double distance : distances) {
+    const double share = std::min(1.0, width_over_distance * distance / width);
+    local.push_back(share * share);
+  }
+  const SurfaceLaplacian laplacian =
+      metric ? surface_laplacian(mesh, *metric, progress) : surface_laplacian(mesh, progress);
+  return diffused(laplacian, distances, {.width = width, .local = local}, progress);
+}
+
+}  // namespace isopath
