@@ -156,7 +156,7 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     EXPECT_GT(smooth.smoothing->gap_before, widest_corner_gap * job.spacing) << name;
     // what was chosen is the path that came out, and no other way that was planned costs less
     const auto cost = [&](const GapRepairCost& way) {
-      return way.length + job.spacing * (20 * way.lifts + 2 * way.sharp_corners);
+      return way.length + job.spacing * (20 * way.lifts + 5 * way.sharp_corners);
     };
     const auto& ways = smooth.smoothing->costs;
     const auto chosen =

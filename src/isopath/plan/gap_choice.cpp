@@ -16,7 +16,8 @@ namespace isopath {
 namespace {
 
 constexpr double lift_over_spacing = 20;
-constexpr double corner_over_spacing = 2;
+/// Whoever asks for smoothing would rather go farther than stop.
+constexpr double corner_over_spacing = 5;
 /// Rounds of planning and measuring; each comes closer.
 constexpr int most_rounds = 4;
 /// Gaps are looked at in the vertices only: between them they may be this much wider.

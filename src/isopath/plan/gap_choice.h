@@ -43,7 +43,7 @@ struct RepairedPlan {
 
 /// Plans passes on levels of a smoothed function, measures, and takes the cheapest way to close the gaps. The cost is
 /// the length of the path on the surface; a lift counts as 20 spacings more and a sharp corner, where a machine stops,
-/// as two. Levels are first spread so that passes lie a spacing apart along most of their length (LevelDensity).
+/// as five. Levels are first spread so that passes lie a spacing apart along most of their length (LevelDensity).
 /// `ridges` are the lines that gaps open along, as for `add_ridge_passes`. The mesh should have edges no longer than
 /// half a spacing. Throws what `plan_impact` does.
 RepairedPlan plan_with_repair(const VertexField& function, const ImpactOptions& options,
