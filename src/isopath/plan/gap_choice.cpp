@@ -19,7 +19,7 @@ constexpr double lift_over_spacing = 20;
 /// Whoever asks for smoothing would rather go farther than stop.
 constexpr double corner_over_spacing = 5;
 /// Rounds of planning and measuring; each comes closer.
-constexpr int most_rounds = 4;
+constexpr int most_rounds = 3;
 /// Gaps are looked at in the vertices only: between them they may be this much wider.
 constexpr double margin = 0.97;
 /// What rounds aim at, so that a few of them get there.
@@ -95,6 +95,14 @@ class Chooser {
     return way.length + options_.spacing * (lift_over_spacing * way.lifts + corner_over_spacing * way.sharp_corners);
   }
 
+  double least_cost() const {
+    double least = infinity;
+    for (const GapRepairCost& way : costs_) {
+      if (way.planned) least = std::min(least, cost_of(way));
+    }
+    return least;
+  }
+
   GapRepairCost figures_of(GapRepair repair, const ImpactPlan& plan, double spacing) const {
     const PathFigures figures = path_figures(plan.curve, options_.spacing);
     return {.repair = repair,
@@ -130,6 +138,13 @@ class Chooser {
     for (int round = 0; round < most_rounds && widest(gaps) > margin * allowed_; ++round) {
       if (!density.raise(gaps, aim * allowed_)) break;
       plan = planned(density, options_);
+      GapRepairCost way = figures_of(GapRepair::levels, plan, options_.spacing);
+      if (cost_of(way) > hopeless * least_cost()) {
+        way.planned = false;
+        costs_.push_back(way);
+        plans_.emplace_back();
+        return;
+      }
       gaps = gaps_of(plan.curve);
     }
     loop(plan);
@@ -138,8 +153,7 @@ class Chooser {
 
   /// Gaps go with the spacing where they come from corners; from tops they go with its root, which takes rounds.
   void lower_spacing(const ImpactPlan& base, double gap) {
-    double least = infinity;
-    for (const GapRepairCost& way : costs_) least = std::min(least, cost_of(way));
+    const double least = least_cost();
     GapRepairCost way = figures_of(GapRepair::spacing, base, options_.spacing);
     way.planned = false;
     ImpactPlan plan;

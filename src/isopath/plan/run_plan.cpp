@@ -231,6 +231,7 @@ void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry*
     options.pattern = *result.job.pattern;
     if (!smooth) result.impact = plan_impact(mesh, *field.function, options, progress);
   } else {
+    options.close_gaps = !smooth;  // plan_with_repair does
     ChosenPlan chosen = plan_by_part(mesh, *field.function, field.at_vertices, options, progress);
     options.pattern = chosen.pattern;
     result.impact = std::move(chosen.plan);
