@@ -223,7 +223,7 @@ class LeastBlend {
     axis_.assign(mesh_.n_vertices(), -infinity);
     for (Index v = 0; v < mesh_.n_vertices(); ++v) {
       const Spoke& spoke = spokes_[v];
-      if (!spoke.end.valid()) continue;
+      if (!spoke.end.valid() || own_pull(v) == 0) continue;  // where fronts hardly differ, spokes end anywhere
       double longest = 0;
       for_neighbours(mesh_, v, [&](Index, double length) { longest = std::max(longest, length); });
       if (spoke.length - distance_[v] > 3 * longest) continue;
@@ -293,6 +293,8 @@ class LeastBlend {
     const double raise = std::max(0.0, wanted - spoke.length);
     // a pull ends half a spacing from the axis, so that it moves no level there; what is raised by more is spread wide
     const double half = 0.5 * axis_gap * spacing_;
+    // a pull at a spoke that ends anywhere is meant for a branch nearby
+    if (raise <= half && own_pull(v) == 0) return 0;
     const double band = std::min(spoke.length, half + 3 * std::max(0.0, raise - half));
     return raise * std::max(0.0, 1 - (spoke.length - distance_[v]) / band);
   }
