@@ -59,3 +59,24 @@ build/isopath medial-axis "${plate[@]}" --prune 0.5 -o "$out/axis.csv"
 build/isopath contours "${plate[@]}" --spacing 8 -o "$out/lines.json"
 python3 tools/axis_picture.py "$out/axis.csv" "$out/lines.json" docs/img/medial_axis.svg
 echo docs/img/medial_axis.svg
+
+# blended fields, on parts made for them
+python3 tools/plates.py "$out/plates"
+blended() { # RUN PART arguments...
+  local run=$1 part=$2
+  shift 2
+  plan "$run" "$out/plates/$part.off" --source boundary --no-report "$@"
+}
+blended l_distance l --spacing 5 --pattern spiral
+blended l_paper l --spacing 5 --pattern spiral --blend-form paper
+blended l_least l --spacing 5 --pattern spiral --blend
+blended star star --spacing 3 --pattern spiral --blend
+blended notch notch --spacing 5 --pattern spiral --blend
+blended disc disc --spacing 4 --pattern double-spiral --blend
+blended square square --spacing 5 --pattern double-spiral --blend
+blended dumbbell dumbbell --spacing 5 --pattern spiral --blend
+python3 tools/path_picture.py docs/img/blend_forms.svg "$out"/l_{distance,paper,least}/impact.csv
+python3 tools/path_picture.py docs/img/blend_spirals.svg "$out"/{star,notch}/impact.csv
+python3 tools/path_picture.py docs/img/blend_neck.svg "$out"/dumbbell/impact.csv
+python3 tools/path_picture.py docs/img/double_spirals.svg "$out"/{disc,square}/impact.csv
+ls docs/img/blend_*.svg docs/img/double_spirals.svg

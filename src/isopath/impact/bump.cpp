@@ -101,6 +101,7 @@ class BumpBuilder {
 
   SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double t) const {
     const Index face = common_face(mesh_, a, b);
+    if (face == no_index) return t < 0.5 ? a : b;  // a step shorter than the tolerance, past a vertex
     return {face, (1 - t) * express_in(mesh_, a, face).barycentric + t * express_in(mesh_, b, face).barycentric};
   }
 
