@@ -53,6 +53,10 @@ plan patches_medial "${part[@]}" --partition medial --spacing 40
 picture patches_creases patches_creases --color patch --hide tool,arrows
 picture patches_medial patches_medial --color patch --hide tool,arrows
 
+# circles along the isolines
+plan trochoidal data/patch_100mm_a.off --source boundary --pattern trochoidal --spacing 4 --circle-radius 12
+picture trochoidal trochoidal --view top --hide tool,arrows
+
 # the medial axis over isolines, seen from above
 plate=(data/patch_100mm_a.off --source boundary --quiet)
 build/isopath medial-axis "${plate[@]}" --prune 0.5 -o "$out/axis.csv"

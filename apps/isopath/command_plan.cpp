@@ -34,6 +34,8 @@ struct PlanArguments {
   std::optional<double> scallop;
   std::optional<double> smooth;
   std::optional<double> clearance;
+  std::optional<double> circle_radius;
+  std::optional<double> circle_step;
   std::optional<std::string> partition;
   std::optional<double> crease_angle;
   std::optional<double> unevenness;
@@ -97,6 +99,8 @@ Job job_of(const PlanArguments& given) {
   replace(job.scallop, given.scallop);
   replace(job.smooth, given.smooth);
   replace(job.clearance, given.clearance);
+  replace(job.circle_radius, given.circle_radius);
+  replace(job.circle_step, given.circle_step);
   if (given.partition) job.partition.by = partition_of(*given.partition);
   if (given.crease_angle) job.partition.crease_angle = *given.crease_angle * std::numbers::pi / 180;
   replace(job.partition.unevenness, given.unevenness);
@@ -159,11 +163,12 @@ void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
 void add_path_options(CLI::App& command, PlanArguments& given) {
   add_sources(command, given.sources);
   command
-      .add_option("--pattern", given.pattern,
-                  "auto: spiral where the isolines are closed, else meander; two-way where that is better;\n"
-                  "contour: a pass for every isoline; spiral; double-spiral: goes in and comes out again; meander;\n"
-                  "two-way: one closed curve without a lift; "
-                  "planar: cuts with parallel planes")
+      .add_option(
+          "--pattern", given.pattern,
+          "auto: spiral where the isolines are closed, else meander; two-way where that is better;\n"
+          "contour: a pass for every isoline; spiral; double-spiral: goes in and comes out again; meander;\n"
+          "two-way: one closed curve without a lift; trochoidal: circles whose centre moves along the isolines;\n"
+          "planar: cuts with parallel planes")
       ->default_str("auto");
   command.add_flag("--blend", given.blend,
                    "Blend the distances with the medial axis, so that a part without holes gets one spiral");
@@ -188,6 +193,15 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
       ->check(number_from_0())
       ->default_str("0: not at all");
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
+      ->check(number_above_0())
+      ->default_str("the spacing");
+}
+
+void add_circle_options(CLI::App& command, PlanArguments& given) {
+  command.add_option("--circle-radius", given.circle_radius, "trochoidal: greatest radius of the circles, mm")
+      ->check(number_above_0())
+      ->default_str("3 spacings");
+  command.add_option("--circle-step", given.circle_step, "trochoidal: way of the circle's centre in one turn, mm")
       ->check(number_above_0())
       ->default_str("the spacing");
 }
@@ -258,6 +272,7 @@ void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
       ->required();
   command->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m or inch")->default_str("mm");
   add_path_options(*command, *arguments);
+  add_circle_options(*command, *arguments);
   add_partition_options(*command, *arguments);
   add_tool_options(*command, *arguments);
   command->add_option("--post", arguments->formats, "Format of the program: " + format_names() + "; may be repeated")

@@ -91,6 +91,8 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
   job.smooth = number();
   if (job.pattern == Pattern::planar || job.pattern == Pattern::double_spiral) job.smooth = 0;
   job.clearance = number();
+  job.circle_radius = number();
+  job.circle_step = number();
   job.tool = {.process = static_cast<Process>(pick(3)),
               .stand_off = number(),
               .ball_diameter = number(),
@@ -134,6 +136,8 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     ASSERT_EQ(again.spacing, job.spacing);
     ASSERT_EQ(again.smooth, job.smooth);
     ASSERT_EQ(again.clearance, job.clearance);
+    ASSERT_EQ(again.circle_radius, job.circle_radius);
+    ASSERT_EQ(again.circle_step, job.circle_step);
     ASSERT_EQ(again.partition.by, job.partition.by);
     ASSERT_EQ(again.partition.crease_angle, job.partition.crease_angle);
     ASSERT_EQ(again.partition.unevenness, job.partition.unevenness);
@@ -173,6 +177,9 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("blend: least\nscallop: 0.1\n"), {"blend", "scallop"});
   expect_all(complaint("pattern: double-spiral\nscallop: 0.1\n"), {"pattern", "scallop"});
   expect_all(complaint("blend: least\npartition:\n  by: medial\n"), {"partition", "medial"});
+  expect_all(complaint("circle_radius: -2\n"), {"line 2", "circle_radius", "-2", "at least 0"});
+  expect_all(complaint("pattern: trochoidal\nscallop: 0.1\n"), {"scallop", "circles"});
+  expect_all(complaint("pattern: trochoidal\nsmooth: 3\n"), {"smooth", "circles"});
   expect_all(complaint("partition:\n  by: size\n"),
              {"line 3", "partition.by", "'size'", "none, creases, medial, both"});
   expect_all(complaint("partition:\n  unevenness: 1\n"), {"line 3", "partition.unevenness", "1", "above 1"});

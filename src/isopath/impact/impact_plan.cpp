@@ -11,6 +11,7 @@
 #include "isopath/impact/passes.h"
 #include "isopath/impact/spiral.h"
 #include "isopath/impact/stroke_order.h"
+#include "isopath/impact/trochoid.h"
 #include "isopath/impact/two_way.h"
 
 namespace isopath {
@@ -215,6 +216,8 @@ std::string_view name_of(Pattern pattern) {
       return "meander";
     case Pattern::two_way:
       return "two-way";
+    case Pattern::trochoidal:
+      return "trochoidal";
     case Pattern::planar:
       return "planar";
   }
@@ -228,6 +231,10 @@ void ImpactOptions::validate() const {
   if (!(spacing > 0 && std::isfinite(spacing))) reject("must be a positive length in mm", "option spacing", spacing);
   if (!(clearance >= 0 && std::isfinite(clearance)))
     reject("must be a length in mm, or 0 for the default", "option clearance", clearance);
+  if (!(circle_radius >= 0 && std::isfinite(circle_radius)))
+    reject("must be a length in mm, or 0 for the default", "option circle-radius", circle_radius);
+  if (!(circle_step >= 0 && std::isfinite(circle_step)))
+    reject("must be a length in mm, or 0 for the default", "option circle-step", circle_step);
   if (pattern == Pattern::double_spiral) {
     throw Error(ErrorCode::bad_usage, "a double spiral needs a function at the vertices: see level_spiral",
                 {.element = "option pattern"});
@@ -237,6 +244,7 @@ void ImpactOptions::validate() const {
 ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options,
                        Progress& progress) {
   options.validate();
+  if (options.pattern == Pattern::trochoidal) return plan_trochoids(mesh, function, options, progress);
   return Planner(mesh, function, options, progress).run();
 }
 

@@ -18,17 +18,20 @@ enum class Pattern {
   /// nested closed isolines become one closed curve that goes in along one arm and out along another; planned by
   /// level_spiral, not by plan_impact
   double_spiral,
-  meander,  ///< quasi-parallel open isolines are joined end to end
-  two_way,  ///< all isolines become one closed curve without a lift, on any connected surface
-  planar,   ///< the cutting-plane baseline: the function is a height, the isolines are plane cuts
+  meander,     ///< quasi-parallel open isolines are joined end to end
+  two_way,     ///< all isolines become one closed curve without a lift, on any connected surface
+  trochoidal,  ///< circles whose centre moves along the isolines, see impact/trochoid.h
+  planar,      ///< the cutting-plane baseline: the function is a height, the isolines are plane cuts
 };
 std::string_view name_of(Pattern pattern);
 
 struct ImpactOptions {
   Pattern pattern = Pattern::spiral;
-  double spacing = 0;      ///< distance between neighbouring passes, mm; required, > 0
-  double clearance = 0;    ///< height of lifts above the surface, mm; 0 takes the spacing
-  bool close_gaps = true;  ///< by loops, see gap_repair.h
+  double spacing = 0;        ///< distance between neighbouring passes, mm; required, > 0
+  double clearance = 0;      ///< height of lifts above the surface, mm; 0 takes the spacing
+  double circle_radius = 0;  ///< trochoidal: greatest radius of the circles, mm; 0 takes three spacings
+  double circle_step = 0;    ///< trochoidal: way of their centre in a turn, mm; 0 takes the spacing
+  bool close_gaps = true;    ///< by loops, see gap_repair.h
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.
   const IntrinsicGeometry* metric = nullptr;
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit

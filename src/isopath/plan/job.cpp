@@ -13,13 +13,14 @@
 namespace isopath {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 7> patterns = {
+constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 8> patterns = {
     {{"auto", std::nullopt},
      {"contour", Pattern::contour},
      {"spiral", Pattern::spiral},
      {"double-spiral", Pattern::double_spiral},
      {"meander", Pattern::meander},
      {"two-way", Pattern::two_way},
+     {"trochoidal", Pattern::trochoidal},
      {"planar", Pattern::planar}}};
 
 constexpr std::array<std::pair<std::string_view, std::optional<BlendForm>>, 3> blends = {
@@ -180,6 +181,14 @@ void Job::validate() const {
   if (!(clearance >= 0) || clearance == infinity) {
     refuse("clearance", fmt::format("{}, allowed is 0 or more", clearance));
   }
+  const auto check_length = [](const char* field, double length) {
+    if (!(length >= 0) || length == infinity) refuse(field, fmt::format("{}, allowed is 0 or more", length));
+  };
+  check_length("circle_radius", circle_radius);
+  check_length("circle_step", circle_step);
+  if (scallop > 0 && pattern == Pattern::trochoidal) {
+    refuse("scallop", fmt::format("{} with circles", scallop), "circles need a spacing: give one instead");
+  }
   if (!planar_direction.allFinite() || planar_direction.isZero(0)) {
     refuse("planar_direction",
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
@@ -187,6 +196,9 @@ void Job::validate() const {
   if (!(smooth >= 0) || smooth == infinity) refuse("smooth", fmt::format("{}, allowed is 0 or more", smooth));
   if (smooth > 0 && pattern == Pattern::planar) {
     refuse("smooth", fmt::format("{}", smooth), "parallel planes have nothing to smooth: leave it out");
+  }
+  if (smooth > 0 && pattern == Pattern::trochoidal) {
+    refuse("smooth", fmt::format("{}", smooth), "circles have no corners to smooth: leave it out");
   }
   if (smooth > 0 && (blend || pattern == Pattern::double_spiral)) {
     refuse("smooth", fmt::format("{}", smooth), "blended distances and double spirals are not smoothed: leave it out");

@@ -36,9 +36,11 @@ struct Job {
   /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.
   double scallop = 0;
   /// Corners of the isolines are rounded by smoothing the distances over this width, mm, see `smoothed_distances`; 0
-  /// keeps them exact. Not for planar passes and double spirals, and not with a blend or a partition.
+  /// keeps them exact. Not for planar passes, circles and double spirals, and not with a blend or a partition.
   double smooth = 0;
-  double clearance = 0;  ///< height of lifts above the surface; 0 takes the spacing
+  double clearance = 0;      ///< height of lifts above the surface; 0 takes the spacing
+  double circle_radius = 0;  ///< trochoidal: greatest radius of the circles; 0 takes three spacings
+  double circle_step = 0;    ///< trochoidal: way of their centre in a turn; 0 takes the spacing
   /// Patches that are planned one by one, each from its own border: then the sources are `auto`, and the spacing is
   /// not given by a scallop.
   PartitionOptions partition = {};

@@ -105,7 +105,10 @@ class PatchPlanner {
     }
     show(p, patch, *field.function);
 
-    ImpactOptions impact{.spacing = options_.spacing, .clearance = options_.clearance};
+    ImpactOptions impact{.spacing = options_.spacing,
+                         .clearance = options_.clearance,
+                         .circle_radius = options_.circle_radius,
+                         .circle_step = options_.circle_step};
     PatchFigures figures;
     ImpactPlan plan;
     try {

@@ -36,8 +36,10 @@ struct PatchedPlan {
 struct PatchPlanOptions {
   std::optional<Pattern> pattern = {};  ///< none: for every patch what suits it (auto_pattern.h)
   Vec3 planar_direction = Vec3::UnitX();
-  double spacing = 0;    ///< mm, > 0
-  double clearance = 0;  ///< of lifts, mm; 0 takes the spacing
+  double spacing = 0;        ///< mm, > 0
+  double clearance = 0;      ///< of lifts, mm; 0 takes the spacing
+  double circle_radius = 0;  ///< see ImpactOptions
+  double circle_step = 0;
   /// Most that a distance may be off, mm; 0 for exact ones.
   double accuracy = 0;
 };

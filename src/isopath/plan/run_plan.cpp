@@ -220,7 +220,11 @@ ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& p
 /// The impact curve, with the pattern the job names or one that suits the part.
 void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry* metric, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
-  ImpactOptions options{.spacing = result.spacing, .clearance = result.job.clearance, .metric = metric};
+  ImpactOptions options{.spacing = result.spacing,
+                        .clearance = result.job.clearance,
+                        .circle_radius = result.job.circle_radius,
+                        .circle_step = result.job.circle_step,
+                        .metric = metric};
   const bool smooth = result.job.smooth > 0;
   if (wants_nested_levels(result.job)) {
     const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
@@ -325,6 +329,8 @@ void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) 
                                  .planar_direction = job.planar_direction,
                                  .spacing = result.spacing,
                                  .clearance = job.clearance,
+                                 .circle_radius = job.circle_radius,
+                                 .circle_step = job.circle_step,
                                  .accuracy = field_accuracy * parts.mesh.size()};
   PatchedPlan plan = plan_patches(parts, options, job.report ? &shown : nullptr, progress);
   result.part.mesh = std::move(parts.mesh);
