@@ -14,7 +14,7 @@ std::vector<double> exact_distances(const TriangleMesh& mesh, const IntrinsicGeo
                                     double stop_distance, Progress& progress) {
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   ListPropagation propagation(mesh, metric, false);
-  propagation.start(source_fronts(mesh, metric, sources));
+  propagation.start(source_fronts(mesh, metric, sources, progress));
   propagation.run(stop_distance, progress);
   return propagation.vertex_distances();
 }

@@ -148,7 +148,7 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   std::optional<ListPropagation> room;
   tbb::parallel_invoke([&] { limits = merge_limits(data->mesh, data->geometry, sources, options, progress); },
                        [&] {
-                         fronts = source_fronts(data->mesh, data->geometry, sources);
+                         fronts = source_fronts(data->mesh, data->geometry, sources, progress);
                          room.emplace(data->mesh, data->geometry, true);
                        });
   ListPropagation& propagation = *room;
@@ -272,7 +272,7 @@ std::vector<SurfacePoint> ExactField::shortest_path(const SurfacePoint& point) c
     SurfacePoint from;
     for_each_face_at(data_->mesh, here, [&](Index face) {
       const SurfacePoint p = express_in(data_->mesh, here, face);
-      SkippedEdges skipped;
+      SkippedEdges skipped{.leaving = true};
       for (int i = 0; i < 3; ++i) {
         skipped.skip[i] = p.barycentric[(i + 2) % 3] == 0;
       }

@@ -86,6 +86,7 @@ struct WayBack {
 /// Edges of a face that a way back must not go through, by the corner index of their tail.
 struct SkippedEdges {
   bool skip[3] = {false, false, false};
+  bool leaving = false;  ///< nor to where a front leaves the face: it comes by p, but goes away from the source
 };
 
 /// The shortest way back from a point of a face, not through the skipped edges, nor to corners that hold the point

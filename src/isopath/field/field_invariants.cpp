@@ -24,7 +24,7 @@ double same_place(const EdgeOfField& edge) { return 2 * std::max(1e-11 * edge.le
 
 void expect_same_distance(const EdgeOfField& edge, std::size_t window, const char* where, double a, double b,
                           double error) {
-  const double tolerance = 1e-9 * std::min(a, b) + 1e-11 * edge.size + error;
+  const double tolerance = 1e-9 * std::min(a, b) + 1e-11 * edge.size + same_place(edge) + error;
   if (std::abs(a - b) <= tolerance) return;
   fail(edge, window, fmt::format("windows of an exact field disagree on the distance {}", where),
        fmt::format("{:.17g} and {:.17g} mm", a, b));

@@ -34,8 +34,8 @@ struct InvariantOptions {
 /// - a window that goes on into a face comes from the other side of the edge, so that its rays lie in that face's cone;
 /// - two windows agree on the distance where they meet, and those at the ends with the vertices.
 ///
-/// Positions are compared within two snap widths, distances within 1e-9 relative and 1e-11 of the model (and what
-/// merging windows may have changed): see docs/robustness.md.
+/// Positions are compared within two snap widths, distances within these, 1e-9 relative and 1e-11 of the model
+/// (and what merging windows may have changed): see docs/robustness.md.
 void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> windows,
                          const InvariantOptions& options = {});
 

@@ -15,8 +15,11 @@
 namespace isopath {
 namespace {
 
-/// Distances are sums of a few square roots; a difference below this part of the model's size decides nothing.
-constexpr double margin_of_size = 1e-14;
+/// Distances are sums of a few square roots, coordinates are turned from frame to frame; a difference below this part
+/// of the model's size decides nothing.
+constexpr double rounding_of_size = 1e-14;
+/// Rises less than any direction is known to.
+constexpr double least_slope = 1e-20;
 /// So few items are not worth waking another thread for.
 constexpr std::size_t worth_sharing = 32;
 constexpr std::size_t vertices_at_a_time = 16;
@@ -30,6 +33,15 @@ constexpr Index lists_without_memory = 64;
 /// So many lists are merged one after the other; more, as sources on a large face send them, are sorted.
 constexpr std::size_t few_lists = 8;
 constexpr std::size_t kept_chunk = 1 << 16;  // in doubles
+
+/// Direction from the apex of a triangle to the head of its base; `tail` is the base's tail in the frame from the head
+/// to the apex. Where these two are close together, the difference of two far points would not know it; elsewhere it
+/// keeps points on one line on it, which regular grids need.
+Vec2 axis_to_head(double base, const Vec2& apex, double right, const Vec2& tail) {
+  constexpr double close = 1e-2;
+  if (right < close * base) return Vec2(tail.x() / base, -tail.y() / base);
+  return Vec2((base - apex.x()) / right, -apex.y() / right);
+}
 
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
   double sum = 0;
@@ -57,11 +69,14 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       fans_(retain ? mesh.n_halfedges() : 0),
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
       workshops_(retain),
-      bucket_width_(bucket_width * mean_length(mesh, geometry)) {
+      bucket_width_(bucket_width * mean_length(mesh, geometry)),
+      rounding_(rounding_of_size * geometry.size()) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     Site& site = sites_[h];
     site.length = geometry.length(h);
-    site.apex = geometry.apex(h);
+    // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
+    const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
+    site.apex = Vec2(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
     site.twin = mesh.twin(h);
     site.tail = mesh.from(h);
   });
@@ -90,7 +105,7 @@ std::size_t ListPropagation::window_bytes() const {
 
 void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limits) {
   limits_ = limits;
-  margin_ = margin_of_size * geometry_.size() + 2 * limits.accuracy;
+  margin_ = rounding_ + 2 * limits.accuracy;
   WindowBlocks& blocks = workshops_.local().blocks;
   struct Arriving {
     Index place;
@@ -110,14 +125,16 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
     const double length = geometry_.length(h);
     // The fronts arrive from inside the half-edge's face, to which the way back leads.
     const auto back_at = [&](double x) { return Vec2(-w.direction(x).x(), std::max(-w.direction(x).y(), 0.0)); };
-    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, 0, back_at(0)}});
+    const auto slack = [&](double x) { return w.kind == Window::Kind::point ? slack_at(w.radius(x)) : 0; };
+    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, slack(0), 0, back_at(0)}});
     if (w.end == length) {
       const Vec2 outgoing = geometry_.apex(h) - Vec2(length, 0);
       const Vec2 back = back_at(length);
-      offer_vertex({mesh_.to(h),
-                    w.root,
-                    w.distance(length),
-                    {TriangleMesh::next(h), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}});
+      offer_vertex(
+          {mesh_.to(h),
+           w.root,
+           w.distance(length),
+           {TriangleMesh::next(h), slack(length), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}});
     }
     if (w.filler && retain_) {
       const Index edge = mesh_.edge_of(h);
@@ -182,7 +199,7 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
   const auto offer = [&](Index to, double length, Index back, const Vec2& direction) {
     const double there = from.distance + length;
     if (there < states_[to].distance)
-      handed.offers.push_back({to, from.root, there, {back, from.arrival.error, direction}});
+      handed.offers.push_back({to, from.root, there, {back, 0, from.arrival.error, direction}});
   };
   const Index first = mesh_.outgoing(vertex);
   Index h = first;
@@ -209,7 +226,8 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
   BlockedArc behind;
   if (!is_source) {
     const Arrival& arrival = states_[vertex].arrival;
-    behind = {std::atan2(std::max(arrival.back.y(), 0.0), arrival.back.x()), std::numbers::pi - angle_slack};
+    behind = {std::atan2(std::max(arrival.back.y(), 0.0), arrival.back.x()),
+              std::max(std::numbers::pi - angle_slack - arrival.slack, 0.0)};
     if (mesh_.is_boundary_vertex(vertex)) {
       for (Index h = first; h != arrival.halfedge; h = mesh_.next_outgoing(h))
         behind.angle += geometry_.angle_at_tail(h);
@@ -235,10 +253,11 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
                       if (place == no_index) return;
                       const FanInterval interval = fan_interval(geometry_, outgoing, low, cut ? high : infinity);
                       const double length = geometry_.length(opposite);
-                      if (!(interval.begin < interval.end)) return;
+                      // From a corner next to the opposite edge many directions pass within a rounding error.
                       Window window;
-                      window.begin = length - interval.end;
-                      window.end = length - interval.begin;
+                      window.begin = std::max(length - interval.end - rounding_, 0.0);
+                      window.end = std::min(length - interval.begin + rounding_, length);
+                      if (!(window.begin < window.end)) return;
                       window.source = Vec2(length, 0) - geometry_.apex(opposite);
                       window.offset = states_[vertex].distance;
                       window.root = states_[vertex].root;
@@ -333,6 +352,22 @@ void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Works
   if (limits_.accuracy > 0) windows = merged(windows, n, site.length, workshop);
 }
 
+ListPropagation::Arrival ListPropagation::arrival_at_apex(const WindowArrays& windows, const ApexReach& apex,
+                                                          const StepGeometry& triangle, Index previous) const {
+  Vec2 back = Vec2(apex.x, 0) - triangle.apex;
+  float slack = 0;
+  if (apex.window == apex.direct) {  // the crossing may be too near to tell the direction
+    const Window w = windows.window(static_cast<std::size_t>(apex.window));
+    const bool is_point = w.kind == Window::Kind::point;
+    back = is_point ? Vec2(w.source - triangle.apex) : Vec2(-w.source);
+    slack = is_point ? slack_at(back.norm()) : 0;
+  } else {
+    slack = slack_at(back.norm());
+  }
+  const Vec2 along = -triangle.apex;
+  return {previous, slack, 0, Vec2(along.dot(back), isopath::cross(along, back))};
+}
+
 void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   const Index h = crossing.halfedge;
   std::size_t n = 0;
@@ -344,7 +379,9 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   const Index previous = TriangleMesh::prev(h);
   const Site& site = sites_[h];
   for (const Index leaving : {previous, next}) __builtin_prefetch(&sites_[std::max(sites_[leaving].twin, 0)], 1);
-  const StepGeometry triangle{site.length, site.apex, sites_[previous].length, sites_[next].length};
+  const Site& right = sites_[next];
+  const StepGeometry triangle{site.length, site.apex, sites_[previous].length, right.length,
+                              axis_to_head(site.length, site.apex, right.length, right.apex)};
   trim(windows, n, h, workshop);
   if (retain_ && n > 0) {
     KeptList* list = workshop.keep(windows, n);
@@ -359,9 +396,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     const Index corner = sites_[previous].tail;
     if (apex.distance < states_[corner].distance) {
       crossing.apex_distance = apex.distance;
-      const Vec2 along = -triangle.apex;
-      const Vec2 back = Vec2(apex.x, 0) - triangle.apex;
-      crossing.apex_arrival = {previous, 0, Vec2(along.dot(back), isopath::cross(along, back))};
+      crossing.apex_arrival = arrival_at_apex(windows, apex, triangle, previous);
       if (retain_) {
         crossing.apex_root = static_cast<Index>(windows.root[apex.window]);
         crossing.apex_arrival.error = windows.error[apex.window];

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -57,11 +59,13 @@ class ListPropagation {
 
  private:
   static constexpr Index not_waiting = std::numeric_limits<Index>::max();
+  static constexpr double full_turn = 2 * std::numbers::pi;
 
   /// How the shortest way reaches a vertex: the way back has the direction `back`, of any length, in the frame of an
   /// outgoing half-edge.
   struct Arrival {
     Index halfedge = no_index;
+    float slack = 0;   ///< angle by which rounding may turn `back`
     double error = 0;  ///< most that the distance is off, by merging windows
     Vec2 back = Vec2::UnitX();
   };
@@ -144,6 +148,9 @@ class ListPropagation {
     return twin == no_index && retain_ ? leaving : twin;
   }
 
+  /// Angle by which the direction to a point of the plane, at this distance, may be off.
+  float slack_at(double distance) const { return static_cast<float>(std::min(rounding_ / distance, full_turn)); }
+
   void relax_edges(Index vertex, Handed& handed) const;
   void send_fan(Index vertex, Workshop& workshop, Handed& handed);
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
@@ -153,6 +160,9 @@ class ListPropagation {
   /// The waiting lists as one, sorted; in one of their blocks when there is only one, otherwise in a scratch.
   WindowArrays gather(Crossing& crossing, Workshop& workshop, std::size_t& n, WindowBlock*& owner) const;
   void cross(Crossing& crossing, Workshop& workshop);
+  /// The way to the apex of a list's triangle, from where the half-edge before `previous` ends.
+  Arrival arrival_at_apex(const WindowArrays& windows, const ApexReach& apex, const StepGeometry& triangle,
+                          Index previous) const;
   /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
   /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
   WindowArrays merged(const WindowArrays& windows, std::size_t& n, double length, Workshop& workshop) const;
@@ -189,6 +199,7 @@ class ListPropagation {
   tbb::enumerable_thread_specific<Workshop> workshops_;
   Index bucket_ = 0;
   double bucket_width_ = 1;
+  double rounding_ = 0;  ///< of coordinates and distances
   double margin_ = 0;
   std::size_t propagated_ = 0;
 };

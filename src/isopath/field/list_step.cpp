@@ -421,8 +421,7 @@ std::size_t cross_to_right(const WindowArrays& windows, std::size_t n, const Ste
   const double length = triangle.right_length;
   const V apex_x = all(triangle.apex.x());
   const V apex_y = all(triangle.apex.y());
-  const Frame frame{apex_x, apex_y, all((triangle.length - triangle.apex.x()) / length),
-                    all(-triangle.apex.y() / length)};
+  const Frame frame{apex_x, apex_y, all(triangle.right_axis.x()), all(triangle.right_axis.y())};
   const V far = all(length);
   const V head = all(triangle.length);
   const V direct_x = all(apex.direct_x);

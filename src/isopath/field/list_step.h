@@ -14,8 +14,9 @@ namespace isopath {
 struct StepGeometry {
   double length = 0;  ///< of the half-edge
   Vec2 apex = Vec2::Zero();
-  double left_length = 0;   ///< from the tail to the apex
-  double right_length = 0;  ///< from the apex to the head
+  double left_length = 0;           ///< from the tail to the apex
+  double right_length = 0;          ///< from the apex to the head
+  Vec2 right_axis = Vec2::UnitX();  ///< from the apex to the head, a unit vector
 };
 
 /// Cuts off what is farther than along the edge from one of its two vertices, where the distances are at most `at_tail`

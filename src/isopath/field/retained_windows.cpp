@@ -15,17 +15,6 @@ constexpr std::size_t few = 16;
 /// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are needed.
 constexpr Index look_ahead = 8;
 
-Window along_edge(double source, double length, double distance, double error, Index root) {
-  Window window;
-  window.end = length;
-  window.source = Vec2(source, 0);
-  window.offset = distance;
-  window.error = error;
-  window.root = root;
-  window.filler = true;
-  return window;
-}
-
 /// A stable sort that asks for no memory when there is little to sort.
 template <class Before>
 void sort_few(std::vector<Window>& windows, Before before) {
@@ -97,6 +86,7 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
   }
   follow_from(mesh_.from(canonical), 0);
   follow_from(mesh_.to(canonical), length);
+  envelope.close_jumps();
   envelope.merge(limits_);
 }
 

@@ -11,6 +11,10 @@ namespace isopath {
 namespace {
 
 constexpr double half_pi = std::numbers::pi / 2;
+/// Coordinates of a point in a frame are good to this part of the model's size.
+constexpr double rounding_of_size = 1e-14;
+/// Between two looks at whether to go on.
+constexpr Index elements_at_a_time = 1024;
 
 /// Clips [low, high] to where f0 + slope·x >= 0.
 void clip(double f0, double slope, double& low, double& high) {
@@ -40,7 +44,7 @@ class FrontBuilder {
  public:
   FrontBuilder(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) : mesh_(mesh), geometry_(geometry) {}
 
-  SourceFronts build(const SourceSet& sources);
+  SourceFronts build(const SourceSet& sources, Progress& progress);
 
  private:
   void start_segment(const SourceElement& element, Index id);
@@ -58,14 +62,16 @@ class FrontBuilder {
   SourceFronts fronts_;
 };
 
-SourceFronts FrontBuilder::build(const SourceSet& sources) {
+SourceFronts FrontBuilder::build(const SourceSet& sources, Progress& progress) {
   source_at_.assign(mesh_.n_vertices(), no_index);
   const auto elements = sources.elements();
   // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
   for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
+    if (id % elements_at_a_time == 0) progress.checkpoint();
     if (elements[id].kind == SourceElement::Kind::segment) start_segment(elements[id], id);
   }
   for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
+    if (id % elements_at_a_time == 0) progress.checkpoint();
     if (elements[id].kind == SourceElement::Kind::point) start_point(elements, id);
   }
   return std::move(fronts_);
@@ -187,6 +193,10 @@ void FrontBuilder::start_point_in_face(std::span<const SourceElement> elements, 
     for (const Vec2& segment : segment_directions(elements, id, h)) {
       clip(segment.dot(window.source), -segment.x(), window.begin, window.end);
     }
+    // Beside the edge many directions pass within a rounding error.
+    const double rounding = rounding_of_size * geometry_.size();
+    window.begin = std::max(window.begin - rounding, 0.0);
+    window.end = std::min(window.end + rounding, geometry_.length(h));
     if (window.begin < window.end) insert_leaving(h, window);
   }
 }
@@ -233,8 +243,9 @@ void FrontBuilder::start_vertex(std::span<const SourceElement> elements, Index i
 
 }  // namespace
 
-SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources) {
-  return FrontBuilder(mesh, geometry).build(sources);
+SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                           Progress& progress) {
+  return FrontBuilder(mesh, geometry).build(sources, progress);
 }
 
 }  // namespace isopath

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/source.h"
 #include "isopath/field/vertex_fan.h"
@@ -27,6 +28,8 @@ struct SourceFronts {
   std::vector<Vertex> vertices;
 };
 
-SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources);
+/// Throws Error(cancelled) when `progress` wants to stop: there may be a million elements.
+SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
+                           Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -9,6 +9,12 @@ namespace {
 /// meet, the shortest way passes inside one of them, up to hair cracks from rounding.
 constexpr double widest_miss = 1e-2;
 
+/// Across a face that is lower than this part of its longest edge, and on edges themselves, ways on both sides may be
+/// equally long, so that each edge keeps a front that leaves the face and none one that enters.
+constexpr double flattest = 1e-6;
+
+enum class Fronts { entering, all_on_edges, all };
+
 /// A candidate way through an edge, in the frame of the edge's canonical half-edge.
 struct Crossing {
   double x = 0;
@@ -18,7 +24,8 @@ struct Crossing {
 };
 
 /// Improves `best` by the straight way from p to the window's source, or by way of the nearest point of the window
-/// where it misses it by a hair. p and the source lie on different sides of the edge.
+/// where it misses it by a hair. p and the source lie on different sides of the edge; or the front leaves p's face by
+/// the edge, and passes p before.
 bool improve(const Window& w, const Vec2& p, double slack, Crossing& best) {
   const bool is_point = w.kind == Window::Kind::point;
   const Vec2 towards = is_point ? Vec2(w.source - p) : Vec2(-w.source);
@@ -95,11 +102,24 @@ void consider_corners(const ExactFieldData& data, Index face, const Vec3& baryce
   }
 }
 
-void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric, WayBack& best) {
+bool lies_flat(const IntrinsicGeometry& geometry, Index face) {
+  const Index h = 3 * face;
+  const double longest = std::max({geometry.length(h), geometry.length(h + 1), geometry.length(h + 2)});
+  return geometry.apex(h).y() * geometry.length(h) <= flattest * longest * longest;
+}
+
+/// True when a front that leaves the face of p by this window passes p before it does.
+bool passes_before(const Window& w, const Vec2& p) {
+  if (w.kind == Window::Kind::line) return w.offset + w.source.dot(p) >= 0;
+  return p.y() >= 0 ? w.source.y() >= p.y() : w.source.y() <= p.y();
+}
+
+void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric, Fronts fronts, WayBack& best) {
   const Index edge = data.mesh.edge_of(h);
   const double length = data.geometry.length(h);
   const bool canonical = data.mesh.halfedge_of(edge) == h;
   Vec2 p = data.geometry.in_frame(h, barycentric);
+  const bool by_any = fronts == Fronts::all || (fronts == Fronts::all_on_edges && p.y() <= flattest * length);
   if (!canonical) p = Vec2(length - p.x(), -p.y());
   Crossing crossing;
   crossing.distance = best.distance;
@@ -110,7 +130,8 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
   if (squared_width < 0) return;
   const double width = std::sqrt(squared_width);
   data.for_each_window(edge, p.x() - width, p.x() + width, [&](const Window& w) {
-    if (w.halfedge != h || !improve(w, p, widest_miss * length, crossing)) return;
+    if (w.halfedge != h && !(by_any && passes_before(w, p))) return;
+    if (!improve(w, p, widest_miss * length, crossing)) return;
     found = true;
     root = w.root;
   });
@@ -130,8 +151,10 @@ WayBack best_way_back(const ExactFieldData& data, Index face, const Vec3& baryce
   const Vec2 p = geometry.in_frame(3 * face, barycentric);
   consider_sources(data, face, p, best);
   consider_corners(data, face, barycentric, p, best);
+  const Fronts fronts =
+      skipped.leaving ? Fronts::entering : (lies_flat(geometry, face) ? Fronts::all : Fronts::all_on_edges);
   for (int i = 0; i < 3; ++i) {
-    if (!skipped.skip[i]) consider_edge(data, 3 * face + i, barycentric, best);
+    if (!skipped.skip[i]) consider_edge(data, 3 * face + i, barycentric, fronts, best);
   }
   if (best.stop == WayBack::Stop::edge && best.at != 3 * face) {
     // into the frame of half-edge 3·face
