@@ -36,6 +36,7 @@ struct PlanArguments {
   std::optional<double> clearance;
   std::optional<double> circle_radius;
   std::optional<double> circle_step;
+  std::optional<double> min_radius;
   std::optional<std::string> partition;
   std::optional<double> crease_angle;
   std::optional<double> unevenness;
@@ -101,6 +102,7 @@ Job job_of(const PlanArguments& given) {
   replace(job.clearance, given.clearance);
   replace(job.circle_radius, given.circle_radius);
   replace(job.circle_step, given.circle_step);
+  replace(job.min_radius, given.min_radius);
   if (given.partition) job.partition.by = partition_of(*given.partition);
   if (given.crease_angle) job.partition.crease_angle = *given.crease_angle * std::numbers::pi / 180;
   replace(job.partition.unevenness, given.unevenness);
@@ -195,6 +197,12 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
       ->check(number_above_0())
       ->default_str("the spacing");
+  command
+      .add_option("--min-radius", given.min_radius,
+                  "Smallest radius that the curve may turn with on the surface, mm; the summary lists places where it\n"
+                  "cannot be kept")
+      ->check(number_above_0())
+      ->default_str("0.08 of the spacing for two-way curves");
 }
 
 void add_circle_options(CLI::App& command, PlanArguments& given) {

@@ -147,8 +147,9 @@ TEST(open_spots, lie_on_the_ridges_of_nested_squares_and_nowhere_else) {
       EXPECT_LE(cell.distance, top.distance);
     }
   }
-  const std::vector<char> none(plate.mesh.n_faces(), 0);
-  EXPECT_TRUE(open_spots(cover.field, limit, resolution, Progress::none(), none).empty());
+  const std::vector<Vec3> corner = {Vec3(0, 0, 0)};
+  const NearPlaces near(corner, 2.5 * w);
+  EXPECT_EQ(open_spots(cover.field, limit, resolution, Progress::none(), {&near, 1.2 * w}).size(), 1u);
 }
 
 TEST(gap_repair, draws_corners_out_no_farther_than_needed) {

@@ -93,6 +93,7 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
   job.clearance = number();
   job.circle_radius = number();
   job.circle_step = number();
+  job.min_radius = number();
   job.tool = {.process = static_cast<Process>(pick(3)),
               .stand_off = number(),
               .ball_diameter = number(),
@@ -138,6 +139,7 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     ASSERT_EQ(again.clearance, job.clearance);
     ASSERT_EQ(again.circle_radius, job.circle_radius);
     ASSERT_EQ(again.circle_step, job.circle_step);
+    ASSERT_EQ(again.min_radius, job.min_radius);
     ASSERT_EQ(again.partition.by, job.partition.by);
     ASSERT_EQ(again.partition.crease_angle, job.partition.crease_angle);
     ASSERT_EQ(again.partition.unevenness, job.partition.unevenness);

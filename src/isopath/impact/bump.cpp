@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,14 @@ constexpr double narrow_base = 0.13;
 constexpr double most_left = 0.16;
 /// Bumps are tried in steps of this, in spacings.
 constexpr double height_step = 0.02;
+/// A tip that would lose more than this by rounding, in spacings, is made flat instead.
+constexpr double most_rounded_off = 0.1;
+/// Turns have this many points and, where the radius does not ask for more, a radius of at most so many spacings.
+constexpr int points_of_turn = 28;
+constexpr double largest_turn = 0.4;
+/// A turn of exactly the radius would be drawn tight when its neighbourhood is.
+constexpr double turn_over_radius = 1.1;
+constexpr double turn_step = 0.03;
 /// From so many cells of a spot the curve is looked for.
 constexpr int most_feet = 5;
 
@@ -35,16 +44,44 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + t * side - p).norm();
 }
 
+/// 1 / cos(θ/2): over an edge of angle θ the way on the surface is at most so many times as long as the straight one.
+double most_over_straight(const TriangleMesh& mesh, Index face, Index other) {
+  const double cos_of_half = std::sqrt(std::max(0.0, 0.5 * (1 + mesh.face_normal(face).dot(mesh.face_normal(other)))));
+  return 1 / std::max(cos_of_half, 0.5);
+}
+
 class BumpBuilder {
  public:
   BumpBuilder(const SurfaceLinker& linker, const SmoothNormals& normals, const ImpactCurve& curve,
-              const CoverField& cover, const OpenSpot& spot, double limit, double spacing)
-      : linker_(linker), mesh_(linker.mesh()), normals_(normals), curve_(curve), cover_(cover), spot_(spot) {
+              const CoverField& cover, const OpenSpot& spot, const BumpLimits& limits)
+      : linker_(linker),
+        mesh_(linker.mesh()),
+        normals_(normals),
+        curve_(curve),
+        cover_(cover),
+        spot_(spot),
+        radius_(limits.radius) {
     // a metric is taken for a scale of lengths in space as small as a spot
     const double in_space = distance_in_space(spot.cells.front());
     const double scale = in_space > 0 ? in_space / spot.cells.front().distance : 1;
-    limit_ = scale * limit;
-    spacing_ = scale * spacing;
+    limit_ = scale * limits.reach;
+    spacing_ = scale * limits.spacing;
+  }
+
+  std::optional<Replacement> best_turn() const {
+    std::optional<Circle> best;
+    for (const CurvePlace& foot : feet()) {
+      const double least = turn_over_radius * radius_;
+      for (double radius = least; radius <= std::max(least, largest_turn * spacing_); radius += turn_step * spacing_) {
+        auto circle = circle_at(foot, radius);
+        if (!circle) break;
+        if (!best || circle->left < best->left || (circle->left == best->left && radius < best->radius))
+          best = std::move(circle);
+        if (best->left == 0) break;
+      }
+    }
+    if (!best || best->left == spot_.cells.size()) return std::nullopt;
+    return replacement({best->foot, {best->foot.after + 1, best->foot.at, best->foot.position}, best->points, {}, 0});
   }
 
   std::optional<Replacement> best() const {
@@ -61,9 +98,15 @@ class BumpBuilder {
   struct Bump {
     CurvePlace start;
     CurvePlace end;
-    SurfacePoint tip;
-    Vec3 tip_position = Vec3::Zero();
-    double cost = 0;  ///< length added, mm
+    std::vector<SurfacePoint> control;  ///< the way between both
+    std::vector<Vec3> reached;          ///< where that way will be once it is rounded
+    double cost = 0;                    ///< length added, mm
+  };
+  struct Circle {
+    CurvePlace foot;
+    double radius = 0;
+    std::vector<SurfacePoint> points;
+    std::size_t left = 0;  ///< cells out of reach
   };
 
   double distance_in_space(const SpotCell& cell) const {
@@ -144,9 +187,8 @@ class BumpBuilder {
     const double full = length_of(*way);
     for (double height = height_step * spacing_;; height += height_step * spacing_) {
       height = std::min(height, full);
-      const SurfacePoint tip = on_way(*way, height);
-      Bump bump = bump_to(foot, tip, height < low_bump * spacing_ ? broad_base : narrow_base);
-      if (reaches_all(bump)) return bump;
+      auto bump = bump_to(foot, *way, height);
+      if (bump && reaches_all(bump->reached)) return bump;
       if (height >= full) return std::nullopt;
     }
   }
@@ -160,28 +202,60 @@ class BumpBuilder {
     return way.points.back();
   }
 
-  Bump bump_to(const CurvePlace& foot, const SurfacePoint& tip, double base) const {
+  /// How much of a corner is lost when it is rounded.
+  double rounded_off(const Vec3& before, const Vec3& corner, const Vec3& behind) const {
+    const Vec3 a = (before - corner).stableNormalized();
+    const Vec3 b = (behind - corner).stableNormalized();
+    const double sin_of_half = std::sqrt(std::max(0.0, 0.5 * (1 - a.dot(b))));
+    return radius_ * (1 / std::max(sin_of_half, 0.1) - 1);
+  }
+
+  /// A bump whose tip is at this height on the way from the foot once it is rounded. None where there is no room.
+  std::optional<Bump> bump_to(const CurvePlace& foot, const SurfaceCurve& way, double height) const {
     Bump bump;
-    bump.tip = tip;
-    bump.tip_position = position_of(mesh_, tip);
     double dropped = 0;
-    for (base *= spacing_;; base /= 2) {
+    Vec3 tip = position_of(mesh_, on_way(way, height));
+    for (double base = spacing_ * (height < low_bump * spacing_ ? broad_base : narrow_base);; base /= 2) {
       bump.start = back(foot, base);
       bump.end = forth(foot, base);
-      if (base < 0.02 * spacing_ || leaves_little(bump, foot, dropped)) break;
+      if (base < 0.02 * spacing_ || leaves_little(bump, foot, tip, dropped)) break;
     }
-    bump.cost =
-        (bump.tip_position - bump.start.position).norm() + (bump.end.position - bump.tip_position).norm() - dropped;
+    bump.reached = {bump.start.position, tip, bump.end.position};
+    double loss = rounded_off(bump.start.position, tip, bump.end.position);
+    if (loss <= most_rounded_off * spacing_) {
+      bump.control = {on_way(way, height + loss)};
+    } else if (!add_flat_tip(on_way(way, height), bump)) {
+      return std::nullopt;
+    }
+    Vec3 last = bump.start.position;
+    for (const SurfacePoint& point : bump.control) {
+      const Vec3 position = position_of(mesh_, point);
+      bump.cost += (position - last).norm();
+      last = position;
+    }
+    bump.cost += (bump.end.position - last).norm() - dropped;
     return bump;
   }
 
-  bool leaves_little(const Bump& bump, const CurvePlace& foot, double& dropped) const {
+  /// Two corners beside a tip that is too sharp to be rounded.
+  bool add_flat_tip(const SurfacePoint& tip, Bump& bump) const {
+    const Vec3 along = (bump.end.position - bump.start.position).stableNormalized();
+    const Vec3 middle = position_of(mesh_, tip);
+    for (const double side : {-1.2, 1.2}) {
+      const NearestPoint corner = linker_.locator().nearest(middle + side * radius_ * along, spacing_);
+      if (!corner.at.valid()) return false;
+      bump.control.push_back(corner.at);
+    }
+    return true;
+  }
+
+  bool leaves_little(const Bump& bump, const CurvePlace& foot, const Vec3& tip, double& dropped) const {
     dropped = 0;
     Vec3 last = bump.start.position;
     bool little = true;
     const auto pass = [&](const Vec3& p) {
-      const double away = std::min(distance_to_segment(p, bump.start.position, bump.tip_position),
-                                   distance_to_segment(p, bump.tip_position, bump.end.position));
+      const double away =
+          std::min(distance_to_segment(p, bump.start.position, tip), distance_to_segment(p, tip, bump.end.position));
       little = little && away <= most_left * spacing_;
       dropped += (p - last).norm();
       last = p;
@@ -195,15 +269,42 @@ class BumpBuilder {
     return little;
   }
 
-  bool reaches_all(const Bump& bump) const {
-    const Vec3& normal = mesh_.face_normal(bump.tip.face);
-    return std::all_of(spot_.cells.begin(), spot_.cells.end(), [&](const SpotCell& cell) {
-      const double straight = std::min(distance_to_segment(cell.position, bump.start.position, bump.tip_position),
-                                       distance_to_segment(cell.position, bump.tip_position, bump.end.position));
-      // over an edge of angle θ the way on the surface is at most 1 / cos(θ/2) times as long
-      const double cos_of_half = std::sqrt(0.5 * (1 + normal.dot(mesh_.face_normal(cell.at.face))));
-      return straight <= limit_ * std::max(cos_of_half, 0.5);
-    });
+  std::size_t out_of_reach(const std::vector<Vec3>& way, Index face) const {
+    return static_cast<std::size_t>(std::count_if(spot_.cells.begin(), spot_.cells.end(), [&](const SpotCell& cell) {
+      double straight = infinity;
+      for (std::size_t i = 1; i < way.size(); ++i)
+        straight = std::min(straight, distance_to_segment(cell.position, way[i - 1], way[i]));
+      return straight * most_over_straight(mesh_, face, cell.at.face) > limit_;
+    }));
+  }
+  bool reaches_all(const std::vector<Vec3>& way) const { return out_of_reach(way, spot_.cells.front().at.face) == 0; }
+
+  /// The circle beside the curve, in the plane that touches the surface at the foot, brought to the surface.
+  std::optional<Circle> circle_at(const CurvePlace& foot, double radius) const {
+    const Vec3 along = forth(foot, 0.5 * radius).position - back(foot, 0.5 * radius).position;
+    const Vec3& normal = mesh_.face_normal(foot.at.face);
+    Vec3 aside = normal.cross(along);
+    if (!(along.norm() > 0.5 * radius && aside.norm() > 0.5 * along.norm())) return std::nullopt;
+    aside.normalize();
+    const Vec3 ahead = aside.cross(normal);
+    if (aside.dot(spot_.cells.front().position - foot.position) < 0) aside = -aside;
+    Circle circle{foot, radius, {}, 0};
+    std::vector<Vec3> way = {foot.position};
+    const double step = 2 * std::numbers::pi * radius / points_of_turn;
+    for (int i = 1; i < points_of_turn; ++i) {
+      const double angle = 2 * std::numbers::pi * i / points_of_turn;
+      const Vec3 place = foot.position + radius * (std::sin(angle) * ahead + (1 - std::cos(angle)) * aside);
+      const NearestPoint there = linker_.locator().nearest(place, radius);
+      if (!there.at.valid()) return std::nullopt;
+      way.push_back(position_of(mesh_, there.at));
+      // over an edge or the rim the circle would be pressed flat
+      const double stepped = (way.back() - way[way.size() - 2]).norm();
+      if (stepped < 0.7 * step || stepped > 1.4 * step) return std::nullopt;
+      circle.points.push_back(there.at);
+    }
+    way.push_back(foot.position);
+    circle.left = out_of_reach(way, foot.at.face);
+    return circle;
   }
 
   std::optional<Replacement> replacement(const Bump& bump) const {
@@ -211,15 +312,17 @@ class BumpBuilder {
     replacement.first = bump.start.after;
     replacement.last = bump.end.after;
     const Index piece = curve_.points[bump.start.after].piece;
-    const double longest = 4 * spacing_;
-    const auto up = linker_.link(bump.start.at, bump.tip, longest);
-    const auto down = linker_.link(bump.tip, bump.end.at, longest);
-    if (!up || !down) return std::nullopt;
     const auto add = [&](const SurfacePoint& at, const Vec3& position) {
       replacement.points.push_back({MoveKind::cover, at, position, normals_.at(at), piece});
     };
-    for (std::size_t i = 0; i < up->size(); ++i) add(up->points[i], up->positions[i]);
-    for (std::size_t i = 1; i < down->size(); ++i) add(down->points[i], down->positions[i]);
+    add(bump.start.at, bump.start.position);
+    std::vector<SurfacePoint> goals = bump.control;
+    goals.push_back(bump.end.at);
+    for (const SurfacePoint& goal : goals) {
+      const auto way = linker_.link(replacement.points.back().at, goal, 4 * spacing_);
+      if (!way) return std::nullopt;
+      for (std::size_t i = 1; i < way->size(); ++i) add(way->points[i], way->positions[i]);
+    }
     return replacement;
   }
 
@@ -229,6 +332,7 @@ class BumpBuilder {
   const ImpactCurve& curve_;
   const CoverField& cover_;
   const OpenSpot& spot_;
+  double radius_ = 0;
   double limit_ = 0;
   double spacing_ = 0;
 };
@@ -237,8 +341,14 @@ class BumpBuilder {
 
 std::optional<Replacement> bump_into(const SurfaceLinker& linker, const SmoothNormals& normals,
                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
-                                     double limit, double spacing) {
-  return BumpBuilder(linker, normals, curve, cover, spot, limit, spacing).best();
+                                     const BumpLimits& limits) {
+  return BumpBuilder(linker, normals, curve, cover, spot, limits).best();
+}
+
+std::optional<Replacement> turn_into(const SurfaceLinker& linker, const SmoothNormals& normals,
+                                     const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
+                                     const BumpLimits& limits) {
+  return BumpBuilder(linker, normals, curve, cover, spot, limits).best_turn();
 }
 
 }  // namespace isopath

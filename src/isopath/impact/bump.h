@@ -17,11 +17,24 @@ struct Replacement {
   std::vector<ImpactPoint> points;  ///< what lies between them from now on
 };
 
-/// A short stretch of the curve drawn out towards an open spot, so far that nothing in the spot is farther than
-/// `limit` from it: the shortest one found. None where the spot is too large for one such bump. Limit and spacing are
-/// in the lengths of the cover's field.
+/// What bumps and turns have to keep, in the lengths of the cover's field unless said otherwise.
+struct BumpLimits {
+  double reach = 0;    ///< nothing in the spot is farther than this from the bump
+  double spacing = 0;  ///< of the passes
+  double radius = 0;  ///< the curve's corners are rounded with this radius afterwards, mm; tips go as far as that takes
+};
+
+/// A short stretch of the curve drawn out towards an open spot, so far that all of the spot is in reach: the shortest
+/// one found. None where the spot is too large for one such bump.
 std::optional<Replacement> bump_into(const SurfaceLinker& linker, const SmoothNormals& normals,
                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
-                                     double limit, double spacing);
+                                     const BumpLimits& limits);
+
+/// A full turn on a circle of at least the radius that touches the curve, on the side of an open spot, for curves that
+/// may have no corners: the smallest one that has the spot in reach, or one that has some of it. None where the surface
+/// has no room for one or the curve no direction.
+std::optional<Replacement> turn_into(const SurfaceLinker& linker, const SmoothNormals& normals,
+                                     const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
+                                     const BumpLimits& limits);
 
 }  // namespace isopath

@@ -10,6 +10,7 @@
 #include "isopath/core/quiet_progress.h"
 #include "isopath/impact/bump.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/near_places.h"
 #include "isopath/impact/open_spots.h"
 #include "isopath/impact/passes.h"
 #include "isopath/mesh/surface_walk.h"
@@ -67,44 +68,6 @@ std::vector<Contour> loops_in(const TriangleMesh& mesh, const ExactField& field,
   return kept;
 }
 
-/// Places in a grid of cells, to ask what is near.
-class NearPlaces {
- public:
-  NearPlaces(const std::vector<Replacement>& replacements, double reach) : reach_(reach) {
-    for (const Replacement& r : replacements) {
-      for (const ImpactPoint& point : r.points) places_.emplace_back(cell_of(point.position), point.position);
-    }
-    std::sort(places_.begin(), places_.end(), before);
-  }
-
-  /// Whether one of them is within `radius`, which is at most the reach.
-  bool any_near(const Vec3& p, double radius) const {
-    const Cell at = cell_of(p);
-    for (Index x = at[0] - 1; x <= at[0] + 1; ++x) {
-      for (Index y = at[1] - 1; y <= at[1] + 1; ++y) {
-        const Cell last{x, y, at[2] + 1};
-        for (auto e = std::lower_bound(places_.begin(), places_.end(), Place{{x, y, at[2] - 1}, Vec3::Zero()}, before);
-             e != places_.end() && e->first <= last; ++e) {
-          if ((e->second - p).norm() <= radius) return true;
-        }
-      }
-    }
-    return false;
-  }
-
- private:
-  using Cell = std::array<Index, 3>;
-  using Place = std::pair<Cell, Vec3>;
-  static bool before(const Place& a, const Place& b) { return a.first < b.first; }
-  Cell cell_of(const Vec3& p) const {
-    return {static_cast<Index>(std::floor(p.x() / reach_)), static_cast<Index>(std::floor(p.y() / reach_)),
-            static_cast<Index>(std::floor(p.z() / reach_))};
-  }
-
-  double reach_;
-  std::vector<Place> places_;
-};
-
 class GapCloser {
  public:
   GapCloser(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve, const GapLimits& limits,
@@ -120,7 +83,7 @@ class GapCloser {
     std::vector<Replacement> changes;
     bool loops = true;
     for (int round = 0; round < most_rounds; ++round) {
-      const auto [cover, spots] = loops || !may_look_at_parts_ ? look_everywhere() : look_beside(changes);
+      const auto [cover, spots] = loops ? look_everywhere() : look_beside(changes);
       changes = bumps_and_loops(cover, spots, loops);
       if (changes.empty()) break;
       count += replace(mesh_, curve_, changes);
@@ -143,15 +106,21 @@ class GapCloser {
   /// Bumps change gaps only beside them, and what lies two spacings away has no part in those.
   View look_beside(const std::vector<Replacement>& changes) {
     const double w = limits_.spacing;
-    const NearPlaces changed(changes, 2.5 * w);
-    std::vector<char> moves;
-    for (const ImpactPoint& point : curve_.points) moves.push_back(changed.any_near(point.position, 2.5 * w) ? 1 : 0);
-    std::vector<char> faces;
-    for (Index f = 0; f < mesh_.n_faces(); ++f)
-      faces.push_back(changed.any_near(position_of(mesh_, {f, Vec3::Constant(1.0 / 3)}), 1.2 * w) ? 1 : 0);
+    std::vector<Vec3> places;
+    for (const Replacement& change : changes) {
+      for (const ImpactPoint& point : change.points) places.push_back(point.position);
+    }
+    const NearPlaces changed(places, 2.5 * w);
     QuietProgress quiet(progress_);
-    CoverField cover = distance_from_part_of_cover(mesh_, curve_, moves, 2 * w, w, quiet);
-    std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * w, progress_, faces);
+    CoverField cover = [&] {
+      if (!may_look_at_parts_) return distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);
+      std::vector<char> moves;
+      for (const ImpactPoint& point : curve_.points) moves.push_back(changed.any_near(point.position, 2.5 * w) ? 1 : 0);
+      return distance_from_part_of_cover(mesh_, curve_, moves, 2 * w, w, quiet);
+    }();
+    const bool everywhere = limits_.metric != nullptr;  // whose lengths are not those of places
+    std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * w, progress_,
+                                             everywhere ? OpenSpotsNear{} : OpenSpotsNear{&changed, 1.2 * w});
     return {std::move(cover), std::move(spots)};
   }
 
@@ -164,10 +133,11 @@ class GapCloser {
     double farthest = 0;
     for (const OpenSpot& spot : spots) {
       progress_.checkpoint();
-      if (auto bump = bump_into(linker_, normals_, curve_, cover, spot, limit() - bump_margin * w, w)) {
-        replacements.push_back(*std::move(bump));
-        continue;
-      }
+      const BumpLimits bump_limits{limit() - bump_margin * w, w, limits_.radius};
+      auto bump = limits_.round ? turn_into(linker_, normals_, curve_, cover, spot, bump_limits)
+                                : bump_into(linker_, normals_, curve_, cover, spot, bump_limits);
+      if (bump) replacements.push_back(*std::move(bump));
+      if (bump || limits_.round) continue;
       farthest = std::max(farthest, spot.cells.front().distance);
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }

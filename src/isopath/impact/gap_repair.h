@@ -22,6 +22,10 @@ struct GapLimits {
   double spacing = 0;                         ///< of the passes, in the lengths of the metric
   double widest = widest_gap;                 ///< gaps wider than this are closed, in spacings
   const IntrinsicGeometry* metric = nullptr;  ///< null for lengths in space
+  double radius = 0;  ///< corners are rounded with this radius afterwards, mm: bumps go as far as that takes
+  /// The curve is round already and is to stay so: full turns on circles of at least the radius take the place of bumps
+  /// and loops, and what they do not reach stays open.
+  bool round = false;
 };
 
 /// Closes what passes leave open where fronts meet: at saddles of the field, in sharp corners, inside the last pass

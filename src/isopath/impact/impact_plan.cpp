@@ -24,6 +24,9 @@ constexpr double longest_link_in_spacings = 8;
 /// much closer keep it within `widest_corner_gap`, so that ordinary corners need no detours.
 constexpr double pass_allowance = 0.98;
 
+/// Corners of two-way curves are rounded with this radius, in spacings: a right angle loses 0.03 spacings.
+constexpr double default_radius = 0.08;
+
 std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
   std::vector<Vec3> places;
   const std::size_t stride = std::max<std::size_t>(1, contour.points.size() / most);
@@ -91,22 +94,35 @@ class Planner {
           fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
     }
     plan.curve = assembly.take();
-    if (options_.close_gaps) close_gaps(plan.curve);
+    if (options_.close_gaps) finish(plan);
     plan.contours = std::move(passes_.contours);
     return plan;
   }
 
  private:
-  void close_gaps(ImpactCurve& curve) {
-    progress_.stage("wide gaps");
+  /// Closes gaps and rounds corners: bumps first, which may have corners, and what rounding opens by full turns.
+  void finish(ImpactPlan& plan) {
     const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
-    close_wide_gaps(linker_, normals_, curve,
-                    {options_.spacing, as_they_are ? widest_corner_gap : widest_gap, options_.metric}, progress_);
+    GapLimits limits{.spacing = options_.spacing,
+                     .widest = as_they_are ? widest_corner_gap : widest_gap,
+                     .metric = options_.metric,
+                     .radius = options_.min_radius};
+    if (limits.radius == 0 && options_.pattern == Pattern::two_way) limits.radius = default_radius * options_.spacing;
+    progress_.stage("wide gaps");
+    close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
+    if (limits.radius == 0) return;
+    plan.radius = limits.radius;
+    limits.round = true;
+    plan.tight = keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_);
+    if (close_wide_gaps(linker_, normals_, plan.curve, limits, progress_) == 0) return;
+    // a radius that was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
+    plan.tight = options_.min_radius > 0 ? keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_)
+                                         : tight_places(mesh_, plan.curve, limits.radius, progress_);
   }
 
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.
   void choose() {
-    const double spacing = pass_allowance * options_.spacing;
+    const double spacing = (options_.pattern == Pattern::two_way ? 1 : pass_allowance) * options_.spacing;
     passes_ = choose_passes(mesh_, function_, spacing, progress_);
     if (options_.pattern != Pattern::two_way || passes_.spacing > (1 - 1e-3) * spacing) return;
     const auto length = [&](const Passes& passes) {
@@ -229,6 +245,8 @@ void ImpactOptions::validate() const {
     throw Error(ErrorCode::bad_usage, what, {.element = element, .value = fmt::format("{}", value)});
   };
   if (!(spacing > 0 && std::isfinite(spacing))) reject("must be a positive length in mm", "option spacing", spacing);
+  if (!(min_radius >= 0 && std::isfinite(min_radius)))
+    reject("must be a length in mm, or 0 for the default", "option min_radius", min_radius);
   if (!(clearance >= 0 && std::isfinite(clearance)))
     reject("must be a length in mm, or 0 for the default", "option clearance", clearance);
   if (!(circle_radius >= 0 && std::isfinite(circle_radius)))

@@ -8,6 +8,7 @@
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/impact/impact_curve.h"
+#include "isopath/impact/min_radius.h"
 
 namespace isopath {
 
@@ -31,7 +32,10 @@ struct ImpactOptions {
   double clearance = 0;      ///< height of lifts above the surface, mm; 0 takes the spacing
   double circle_radius = 0;  ///< trochoidal: greatest radius of the circles, mm; 0 takes three spacings
   double circle_step = 0;    ///< trochoidal: way of their centre in a turn, mm; 0 takes the spacing
-  bool close_gaps = true;    ///< by loops, see gap_repair.h
+  bool close_gaps = true;    ///< and round corners, see gap_repair.h and min_radius.h
+  /// Smallest radius that the curve may turn with on the surface, mm. 0: corners of two-way curves are rounded with
+  /// 0.08 spacings, which costs no coverage, and those of other patterns stay.
+  double min_radius = 0;
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.
   const IntrinsicGeometry* metric = nullptr;
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit
@@ -40,6 +44,8 @@ struct ImpactOptions {
 struct ImpactPlan {
   ImpactCurve curve;
   std::vector<Contour> contours;      ///< the isolines the curve was made from
+  double radius = 0;                  ///< that corners were rounded with, mm; 0 where they were not
+  std::vector<TightPlace> tight;      ///< where the smallest radius could not be kept
   std::vector<std::string> warnings;  ///< what the user should know, one sentence each
 };
 

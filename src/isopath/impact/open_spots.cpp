@@ -19,8 +19,8 @@ constexpr double reach_of_neighbours = 1.6;
 
 class SpotSearch {
  public:
-  SpotSearch(const ExactField& field, double limit, double resolution)
-      : field_(field), mesh_(field.mesh()), limit_(limit), resolution_(resolution) {}
+  SpotSearch(const ExactField& field, double limit, double resolution, const OpenSpotsNear& near)
+      : field_(field), mesh_(field.mesh()), limit_(limit), resolution_(resolution), near_(near) {}
 
   /// What may be farther than the limit is halved until it is small, or certainly farther and small enough.
   void search(Index face, std::vector<SpotCell>& cells) const {
@@ -30,19 +30,27 @@ class SpotSearch {
     const IntrinsicGeometry& geometry = field_.geometry();
     const Vec2 apex = geometry.apex(3 * face);
     const FaceCorners corners = {Vec3::Zero(), Vec3(geometry.length(3 * face), 0, 0), Vec3(apex.x(), apex.y(), 0)};
+    const FaceCorners in_space = corners_of(mesh_, face);
     std::vector<FacePart> parts{FacePart::whole(face)};
     while (!parts.empty()) {
       const FacePart part = parts.back();
       parts.pop_back();
       const SurfacePoint centre{face, part.centre()};
-      const double distance = field_.value(centre);
+      const Vec3 position = position_of(mesh_, centre);
+      const double size = near_.places ? radius_of(in_space, part) : 0;
+      if (near_.places && size <= near_.radius && !near_.places->any_near(position, near_.radius + size)) continue;
       const double radius = radius_of(corners, part);
+      if (near_.places && size > near_.radius) {
+        halve(corners, part, parts);
+        continue;
+      }
+      const double distance = field_.value(centre);
       if (distance + radius <= limit_) continue;
       const bool all_open = distance - radius > limit_;
       if (radius > (all_open ? largest_cell_over_resolution : 1.0) * resolution_) {
         halve(corners, part, parts);
       } else if (distance > limit_) {
-        cells.push_back({centre, position_of(mesh_, centre), distance, radius});
+        cells.push_back({centre, position, distance, radius});
       }
     }
   }
@@ -52,6 +60,7 @@ class SpotSearch {
   const TriangleMesh& mesh_;
   double limit_;
   double resolution_;
+  const OpenSpotsNear& near_;
 };
 
 using GridCell = std::array<Index, 3>;
@@ -104,16 +113,16 @@ std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cell
 }  // namespace
 
 std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution, const Progress& progress,
-                                 const std::vector<char>& marked) {
+                                 const OpenSpotsNear& near) {
   const Index n = field.mesh().n_faces();
   constexpr Index chunk = 64;
-  const SpotSearch spot_search(field, limit, resolution);
+  const SpotSearch spot_search(field, limit, resolution, near);
   std::vector<std::vector<SpotCell>> found((n + chunk - 1) / chunk);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
     const auto first = static_cast<Index>(k) * chunk;
     for (Index f = first; f < std::min(n, first + chunk); ++f) {
       progress.checkpoint();
-      if (marked.empty() || marked[f]) spot_search.search(f, found[k]);
+      spot_search.search(f, found[k]);
     }
   });
   std::vector<SpotCell> cells;

@@ -4,6 +4,7 @@
 
 #include "isopath/core/progress.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/impact/near_places.h"
 
 namespace isopath {
 
@@ -20,12 +21,17 @@ struct OpenSpot {
   std::vector<SpotCell> cells;  ///< the one with the largest distance first
 };
 
+/// Where to look: within `radius` in space of some places. Everywhere when there are none.
+struct OpenSpotsNear {
+  const NearPlaces* places = nullptr;
+  double radius = 0;
+};
+
 /// The parts of the surface that are more than `limit` away from the source. Branch and bound over the faces: as
 /// distances have slope 1, no place is missed that is more than `resolution` farther than the limit. Cells are as
 /// small as that at the rim of a spot, and up to ten times as large inside it. In an order that depends on nothing but
-/// the field; unreached faces are left out, and where `marked` is not empty those that it does not mark. Throws
-/// Error(cancelled) on request.
+/// the field; unreached faces are left out. Throws Error(cancelled) on request.
 std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution,
-                                 const Progress& progress = Progress::none(), const std::vector<char>& marked = {});
+                                 const Progress& progress = Progress::none(), const OpenSpotsNear& near = {});
 
 }  // namespace isopath

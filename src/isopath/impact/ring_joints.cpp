@@ -14,9 +14,10 @@
 namespace isopath {
 namespace {
 
-/// Length of a cut in spacings w. On the edge of the part, w/2 from the ring, the nearest rung's foot is
-/// (w/2) √(1 + cut²) away; this keeps the gap there at 1.07 w, and at 1.04 w on the side where another ring is.
-constexpr double cut_over_spacing = 0.38;
+/// Length c of a cut in spacings w. On the edge of the part, w/2 from the ring, the nearest rung's foot is √(w² + c²) /
+/// 2 away; where its corner is rounded with the radius r it is √((c/2 + r)² + (w/2 + r)²) - r: this and 0.08 w keep the
+/// gap there at 1.05 w.
+constexpr double cut_over_spacing = 0.18;
 /// Rings at the top of the function are half a spacing from the next one; where they are nearer still, or where a
 /// metric makes them so, cuts are shorter too.
 constexpr double most_cut_over_distance = 2 * cut_over_spacing;

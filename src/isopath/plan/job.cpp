@@ -186,6 +186,7 @@ void Job::validate() const {
   };
   check_length("circle_radius", circle_radius);
   check_length("circle_step", circle_step);
+  check_length("min_radius", min_radius);
   if (scallop > 0 && pattern == Pattern::trochoidal) {
     refuse("scallop", fmt::format("{} with circles", scallop), "circles need a spacing: give one instead");
   }

@@ -44,6 +44,7 @@ struct Job {
   /// Patches that are planned one by one, each from its own border: then the sources are `auto`, and the spacing is
   /// not given by a scallop.
   PartitionOptions partition = {};
+  double min_radius = 0;  ///< smallest radius that the curve turns with on the surface; 0: see ImpactOptions
   ToolOptions tool = {};  ///< process, tool, feeds
   std::vector<std::string> programs =
       {};              ///< formats to write the program in, of `export_formats()`; none: the planner chooses

@@ -105,6 +105,7 @@ Job read_job(const fs::path& path) {
   fields.read("clearance", job.clearance, {.least = 0});
   fields.read("circle_radius", job.circle_radius, {.least = 0});
   fields.read("circle_step", job.circle_step, {.least = 0});
+  fields.read("min_radius", job.min_radius, {.least = 0});
   read_partition(fields.section("partition"), job.partition);
   read_tool(fields.section("tool"), job.tool);
   fields.read_texts("programs", [&](const std::string& text) {
@@ -141,6 +142,7 @@ std::string job_yaml(const Job& job, const fs::path& folder) {
   line("clearance", job.clearance);
   line("circle_radius", job.circle_radius);
   line("circle_step", job.circle_step);
+  line("min_radius", job.min_radius);
   text += fmt::format("partition:\n  by: {}\n  crease_angle: {}\n  unevenness: {}\n", name_of(job.partition.by),
                       job.partition.crease_angle, job.partition.unevenness);
   text += tool_yaml(job.tool);

@@ -108,7 +108,8 @@ class PatchPlanner {
     ImpactOptions impact{.spacing = options_.spacing,
                          .clearance = options_.clearance,
                          .circle_radius = options_.circle_radius,
-                         .circle_step = options_.circle_step};
+                         .circle_step = options_.circle_step,
+                         .min_radius = options_.min_radius};
     PatchFigures figures;
     ImpactPlan plan;
     try {

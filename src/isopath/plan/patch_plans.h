@@ -40,6 +40,7 @@ struct PatchPlanOptions {
   double clearance = 0;      ///< of lifts, mm; 0 takes the spacing
   double circle_radius = 0;  ///< see ImpactOptions
   double circle_step = 0;
+  double min_radius = 0;  ///< of turns on the surface, mm; 0 takes the default of ImpactOptions
   /// Most that a distance may be off, mm; 0 for exact ones.
   double accuracy = 0;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
+#include "isopath/impact/min_radius.h"
 
 namespace isopath {
 namespace {
@@ -93,18 +94,19 @@ Index count_corners(const Polyline& line, double reach) {
 
 }  // namespace
 
-PathFigures path_figures(const ImpactCurve& curve, double spacing) {
+PathFigures path_figures(const ImpactCurve& curve, double spacing, double radius) {
   if (!(spacing > 0)) {
     throw Error(ErrorCode::bad_usage, "the spacing must be above zero",
                 {.element = "spacing", .value = fmt::format("{}", spacing)});
   }
   PathFigures figures;
+  const double window = radius > 0 ? std::min(spacing / 2, radius_window * radius) : spacing / 2;
   figures.cover_length = length_of(curve, MoveKind::cover);
   figures.links_length = length_of(curve, MoveKind::link);
   figures.pieces = curve.points.empty() ? 0 : curve.points.back().piece + 1;
   figures.lifts = std::max<Index>(figures.pieces - 1, 0);
   for (const Polyline& line : stretches(curve, [](MoveKind kind) { return kind == MoveKind::cover; })) {
-    figures.min_radius = std::min(figures.min_radius, smallest_radius(line, spacing / 2));
+    figures.min_radius = std::min(figures.min_radius, smallest_radius(line, window));
   }
   for (const Polyline& line : stretches(curve, [](MoveKind kind) { return kind != MoveKind::lift; })) {
     figures.sharp_corners += count_corners(line, spacing / 20);

@@ -11,6 +11,15 @@
 namespace isopath {
 namespace {
 
+nlohmann::ordered_json tight_json(const PlanResult& result) {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (const TightPlace& place : result.tight) {
+    const Vec3& p = place.position;
+    places.push_back({{"at", {p.x(), p.y(), p.z()}}, {"radius", place.radius}});
+  }
+  return places;
+}
+
 nlohmann::ordered_json scallop_json(const PlanResult& result) {
   const ScallopReport& measured = result.scallop->measured;
   return {{"wanted", result.job.scallop},
@@ -89,6 +98,7 @@ std::string summary_json(const PlanResult& result) {
                   {"time_s", std::move(times)},
                   {"peak_memory_mb", result.peak_memory_mb},
                   {"warnings", result.warnings}};
+  if (result.job.min_radius > 0) summary["tight_places"] = tight_json(result);
   if (!result.patches.empty()) summary["patches"] = patches_json(result);
   if (result.scallop) summary["scallop"] = scallop_json(result);
   if (result.smoothing) summary["smoothing"] = smoothing_json(result);

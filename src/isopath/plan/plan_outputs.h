@@ -15,7 +15,8 @@ namespace isopath {
 /// (null where the path is straight), `sharp_corners`, `path_time_s`, `time_s` per stage, `peak_memory_mb`,
 /// `warnings`; with a partition `patches` in the order of work (`pattern`, `area`, `cover_length`, `pieces`, `gap` of
 /// each by itself); with smoothing `smoothing` (`width`, `gap_before_repair` over the spacing, `repair`, and what all
-/// `ways` to close gaps cost). Only `time_s` and `peak_memory_mb` differ from run to run.
+/// `ways` to close gaps cost); where the job asks for a smallest radius `tight_places`, those with less (`at`,
+/// `radius`). Only `time_s` and `peak_memory_mb` differ from run to run.
 std::string summary_json(const PlanResult& result);
 
 /// All files of a run: summary.json, impact.csv, tool.csv, path.vtp, the programs, job.yaml (with paths relative to

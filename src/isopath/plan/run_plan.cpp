@@ -224,6 +224,7 @@ void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry*
                         .clearance = result.job.clearance,
                         .circle_radius = result.job.circle_radius,
                         .circle_step = result.job.circle_step,
+                        .min_radius = result.job.min_radius,
                         .metric = metric};
   const bool smooth = result.job.smooth > 0;
   if (wants_nested_levels(result.job)) {
@@ -267,6 +268,20 @@ void warn_of_axis_jumps(const PlanResult& result, std::vector<std::string>& warn
                   "({:.4g}, {:.4g}, {:.4g}): a machine slows down or swings out there; a fixed axis, or a part with "
                   "rounded edges, avoids it",
                   reach, jumps.count, jumps.worst * 180 / std::numbers::pi, jumps.at.x(), jumps.at.y(), jumps.at.z()));
+}
+
+/// Looks at the whole curve: links between patches have corners, too.
+void find_tight_places(PlanResult& result, const Progress& progress) {
+  const double wanted = result.job.min_radius;
+  if (!(wanted > 0)) return;
+  result.tight = tight_places(result.part.mesh, result.impact.curve, wanted, progress);
+  if (result.tight.empty()) return;
+  const auto worst = std::min_element(result.tight.begin(), result.tight.end(),
+                                      [](const TightPlace& a, const TightPlace& b) { return a.radius < b.radius; });
+  result.warnings.push_back(fmt::format(
+      "the curve turns with less than the radius of {:.4g} mm at {} places, with {:.3g} mm at ({:.4g}, "
+      "{:.4g}, {:.4g})",
+      wanted, result.tight.size(), worst->radius, worst->position.x(), worst->position.y(), worst->position.z()));
 }
 
 /// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
@@ -331,6 +346,7 @@ void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) 
                                  .clearance = job.clearance,
                                  .circle_radius = job.circle_radius,
                                  .circle_step = job.circle_step,
+                                 .min_radius = job.min_radius,
                                  .accuracy = field_accuracy * parts.mesh.size()};
   PatchedPlan plan = plan_patches(parts, options, job.report ? &shown : nullptr, progress);
   result.part.mesh = std::move(parts.mesh);
@@ -370,9 +386,11 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
 
   measure(result, metric, progress);
-  result.figures = path_figures(result.impact.curve, result.spacing);
+  result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
+
+  find_tight_places(result, progress);
 
   if (result.scallop) {
     result.scallop->measured =

@@ -57,6 +57,7 @@ struct PlanResult {
   double length_ratio = 0;
   std::optional<ScallopFigures> scallop;      ///< where the job asks for one
   std::optional<SmoothingFigures> smoothing;  ///< where the job asks for it
+  std::vector<TightPlace> tight;              ///< where the job asks for a smallest radius that could not be kept
   PathFigures figures;
   ToolPath tool;
   std::vector<OutputFile> programs;  ///< of `make_programs`
