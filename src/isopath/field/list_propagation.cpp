@@ -32,7 +32,6 @@ constexpr double bucket_width = 0.5;
 constexpr Index lists_without_memory = 64;
 /// So many lists are merged one after the other; more, as sources on a large face send them, are sorted.
 constexpr std::size_t few_lists = 8;
-constexpr std::size_t kept_chunk = 1 << 16;  // in doubles
 
 /// Direction from the apex of a triangle to the head of its base; `tail` is the base's tail in the frame from the head
 /// to the apex. Where these two are close together, the difference of two far points would not know it; elsewhere it
@@ -285,17 +284,9 @@ WindowArrays ListPropagation::Workshop::scratch(int which, std::size_t n) {
 
 ListPropagation::KeptList* ListPropagation::Workshop::keep(const WindowArrays& windows, std::size_t n) {
   constexpr std::size_t header = sizeof(KeptList) / sizeof(double);
-  const std::size_t needed = header + WindowArrays::tagged_count * n;
-  if (left < needed + WindowBlock::lanes) {
-    left = std::max(kept_chunk, needed + WindowBlock::lanes);
-    kept.push_back(std::make_unique_for_overwrite<double[]>(left));
-    fresh = kept.back().get();
-  }
-  auto* list = new (fresh) KeptList{nullptr, n};
-  windows.copy(n, WindowArrays::at(fresh + header, n, true));
-  fresh += needed;
-  left -= needed;
-  return list;
+  double* memory = kept.take(header + WindowArrays::tagged_count * n);
+  windows.copy(n, WindowArrays::at(memory + header, n, true));
+  return new (memory) KeptList{nullptr, n};
 }
 
 WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std::size_t& n,

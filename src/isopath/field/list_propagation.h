@@ -3,7 +3,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -132,9 +131,7 @@ class ListPropagation {
     std::vector<WindowBlock*> waiting;
     std::vector<double> arrays[4];  ///< of scratch(): two for gather(), one for news(), one for merged()
     std::vector<double> sides[2];
-    std::vector<std::unique_ptr<double[]>> kept;
-    double* fresh = nullptr;
-    std::size_t left = 0;
+    WindowMemory kept;
   };
   /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
   enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };

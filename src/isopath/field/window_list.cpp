@@ -5,6 +5,7 @@
 #include <cstring>
 #include <new>
 #include <numeric>
+#include <utility>
 
 namespace isopath {
 namespace {
@@ -102,6 +103,17 @@ void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& t
   for (std::size_t i = 0; i < n; ++i) (windows + order[i]).copy(1, to + i);
 }
 
+double* WindowMemory::take(std::size_t n) {
+  if (left_ < n + WindowBlock::lanes) {
+    left_ = std::max(chunk_doubles, n + WindowBlock::lanes);
+    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_));
+    fresh_ = chunks_.back().get();
+    bytes_ += left_ * sizeof(double);
+  }
+  left_ -= n;
+  return std::exchange(fresh_, fresh_ + n);
+}
+
 double* WindowBlock::storage() { return reinterpret_cast<double*>(this) + header_doubles; }
 
 WindowBlock* WindowBlocks::take(std::size_t size) {
@@ -114,16 +126,8 @@ WindowBlock* WindowBlocks::take(std::size_t size) {
   }
   const std::size_t capacity = lanes_of(size_class) * WindowBlock::lanes;
   const std::size_t needed = header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
-  if (left_ < needed) {
-    left_ = std::max(chunk_doubles, needed);
-    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_));
-    fresh_ = chunks_.back().get();
-    bytes_ += left_ * sizeof(double);
-  }
-  auto* block = new (fresh_) WindowBlock;
+  auto* block = new (memory_.take(needed)) WindowBlock;
   block->capacity = static_cast<Index>(capacity);
-  fresh_ += needed;
-  left_ -= needed;
   return block;
 }
 

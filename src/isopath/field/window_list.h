@@ -56,6 +56,20 @@ struct WindowBlock {
   double* storage();
 };
 
+/// Memory that is handed out piece after piece and given back as a whole.
+class WindowMemory {
+ public:
+  /// n doubles; WindowBlock::lanes more behind them may be scribbled on until the next ones are taken.
+  double* take(std::size_t n);
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::unique_ptr<double[]>> chunks_;
+  double* fresh_ = nullptr;
+  std::size_t left_ = 0;  ///< doubles from fresh_ on
+  std::size_t bytes_ = 0;
+};
+
 /// Blocks by size, used again once they are given back. One thread takes and gives; a block may end up with another
 /// thread than it came from.
 class WindowBlocks {
@@ -68,15 +82,12 @@ class WindowBlocks {
   WindowArrays arrays(WindowBlock* block) const {
     return WindowArrays::at(block->storage(), static_cast<std::size_t>(block->capacity), tagged_);
   }
-  std::size_t bytes() const { return bytes_; }
+  std::size_t bytes() const { return memory_.bytes(); }
 
  private:
   bool tagged_;
   std::vector<std::vector<WindowBlock*>> free_;  ///< by size class
-  std::vector<std::unique_ptr<double[]>> chunks_;
-  double* fresh_ = nullptr;
-  std::size_t left_ = 0;  ///< doubles from fresh_ on
-  std::size_t bytes_ = 0;
+  WindowMemory memory_;
 };
 
 }  // namespace isopath
