@@ -40,9 +40,9 @@ SurfacePoint on_chord(const TriangleMesh& mesh, const SurfacePoint& a, const Sur
 }
 
 /// A stretch of a curve on the surface with arc length as parameter.
-class Stretch {
+class WalkedStretch {
  public:
-  Stretch(const TriangleMesh& mesh, std::vector<Node> nodes) : mesh_(mesh), nodes_(std::move(nodes)) {
+  WalkedStretch(const TriangleMesh& mesh, std::vector<Node> nodes) : mesh_(mesh), nodes_(std::move(nodes)) {
     arc_.push_back(0);
     for (std::size_t i = 1; i < nodes_.size(); ++i)
       arc_.push_back(arc_.back() + (nodes_[i].position - nodes_[i - 1].position).norm());
@@ -108,7 +108,7 @@ struct Tight {
   TightPlace worst;
 };
 
-std::vector<Tight> tight_intervals(const TriangleMesh& mesh, const Stretch& stretch, double from, double to,
+std::vector<Tight> tight_intervals(const TriangleMesh& mesh, const WalkedStretch& stretch, double from, double to,
                                    double radius, const Progress& progress) {
   std::vector<Tight> found;
   const double window = radius_window * radius;
@@ -132,10 +132,10 @@ class BandTightener {
       : linker_(linker), mesh_(linker.mesh()), radius_(radius), progress_(progress) {}
 
   /// The stretch between two arcs, drawn tight; its ends, and the directions there, stay.
-  std::vector<Node> tightened(const Stretch& stretch, double from, double to) const {
+  std::vector<Node> tightened(const WalkedStretch& stretch, double from, double to) const {
     std::vector<Node> nodes = cut_out(stretch, from, to);
     for (const double step : steps_over_radius) {
-      std::vector<Node> band = sampled(Stretch(mesh_, std::move(nodes)), step * radius_);
+      std::vector<Node> band = sampled(WalkedStretch(mesh_, std::move(nodes)), step * radius_);
       sweep(band);
       nodes = joined(band);
     }
@@ -143,7 +143,7 @@ class BandTightener {
   }
 
  private:
-  static std::vector<Node> cut_out(const Stretch& stretch, double from, double to) {
+  static std::vector<Node> cut_out(const WalkedStretch& stretch, double from, double to) {
     std::vector<Node> nodes = {stretch.at(from)};
     for (std::size_t i = stretch.behind(from); i < stretch.size() && stretch.arc(i) < to; ++i)
       nodes.push_back(stretch.node(i));
@@ -151,7 +151,7 @@ class BandTightener {
     return nodes;
   }
 
-  static std::vector<Node> sampled(const Stretch& part, double step) {
+  static std::vector<Node> sampled(const WalkedStretch& part, double step) {
     const int n = std::max(6, static_cast<int>(std::ceil(part.length() / step)));
     std::vector<Node> band;
     for (int i = 0; i <= n; ++i) band.push_back(part.at(part.length() * i / n));
@@ -252,7 +252,7 @@ std::vector<Tight> with_legs(std::vector<Tight> tight, double legs, double lengt
 std::vector<Node> rounded(const SurfaceLinker& linker, std::vector<Node> nodes, double radius, double legs,
                           const Progress& progress) {
   const TriangleMesh& mesh = linker.mesh();
-  const Stretch stretch(mesh, std::move(nodes));
+  const WalkedStretch stretch(mesh, std::move(nodes));
   const BandTightener tightener(linker, radius, progress);
   std::vector<Node> whole;
   std::size_t next = 0;
@@ -307,7 +307,7 @@ std::vector<TightPlace> tight_places(const TriangleMesh& mesh, const ImpactCurve
   validate_radius(radius);
   std::vector<TightPlace> places;
   for (const auto& [first, end] : runs_on_surface(curve)) {
-    const Stretch stretch(mesh, nodes_of(curve, first, end));
+    const WalkedStretch stretch(mesh, nodes_of(curve, first, end));
     for (const Tight& tight : tight_intervals(mesh, stretch, 0, infinity, radius, progress))
       places.push_back(tight.worst);
   }
