@@ -114,10 +114,17 @@ class Planner {
     plan.radius = limits.radius;
     limits.round = true;
     plan.tight = keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_);
-    if (close_wide_gaps(linker_, normals_, plan.curve, limits, progress_) == 0) return;
-    // a radius that was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
-    plan.tight = options_.min_radius > 0 ? keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_)
-                                         : tight_places(mesh_, plan.curve, limits.radius, progress_);
+    int changes = close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
+    if (options_.min_radius > 0) {
+      // what was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
+      if (changes > 0) plan.tight = keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_);
+      return;
+    }
+    // where only a corner or a loop reaches, the gap matters more
+    limits.round = false;
+    limits.radius = 0;
+    changes += close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
+    if (changes > 0) plan.tight = tight_places(mesh_, plan.curve, plan.radius, progress_);
   }
 
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.

@@ -64,9 +64,19 @@ ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& functio
                         const ImpactOptions& options, Progress& progress) {
   ImpactOptions tried = options;
   tried.pattern = pattern_of(mesh, function, values, progress);
+  // Gaps are closed where it is certain that the curve is the one: that takes longer than all else.
+  tried.close_gaps = false;
+  const ImpactPlan draft = plan_impact(mesh, function, tried, progress);
+  if (lifts_of(draft.curve) > 0) {
+    const Pattern first = std::exchange(tried.pattern, Pattern::two_way);
+    if (!clearly_better(plan_impact(mesh, function, tried, progress).curve, draft.curve)) tried.pattern = first;
+    tried.close_gaps = options.close_gaps;
+    return {tried.pattern, plan_impact(mesh, function, tried, progress)};
+  }
+  tried.close_gaps = options.close_gaps;
   ChosenPlan chosen{tried.pattern, plan_impact(mesh, function, tried, progress)};
   const double ratio = length_on_surface(chosen.plan.curve) * options.spacing / reached_area(mesh, values);
-  if (lifts_of(chosen.plan.curve) == 0 && ratio <= good_length_ratio) return chosen;
+  if (ratio <= good_length_ratio) return chosen;
   tried.pattern = Pattern::two_way;
   ChosenPlan other{tried.pattern, plan_impact(mesh, function, tried, progress)};
   return clearly_better(other.plan.curve, chosen.plan.curve) ? std::move(other) : std::move(chosen);
