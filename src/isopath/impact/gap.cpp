@@ -44,7 +44,7 @@ void sample_face(const ExactField& field, Index face, double radius, std::vector
 
 std::vector<Sample> sample_surface(const ExactField& field, double radius, const Progress& progress) {
   const Index n = field.mesh().n_faces();
-  constexpr Index chunk = 64;
+  constexpr Index chunk = 4;  // a large face may take as long as thousands of small ones
   std::vector<std::vector<Sample>> parts((n + chunk - 1) / chunk);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
     const auto first = static_cast<Index>(k) * chunk;

@@ -115,7 +115,7 @@ std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cell
 std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution, const Progress& progress,
                                  const OpenSpotsNear& near) {
   const Index n = field.mesh().n_faces();
-  constexpr Index chunk = 64;
+  constexpr Index chunk = 4;  // a large face may take as long as thousands of small ones
   const SpotSearch spot_search(field, limit, resolution, near);
   std::vector<std::vector<SpotCell>> found((n + chunk - 1) / chunk);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
