@@ -148,35 +148,33 @@ class BumpBuilder {
     return {face, (1 - t) * express_in(mesh_, a, face).barycentric + t * express_in(mesh_, b, face).barycentric};
   }
 
+  /// From a place to point i of the curve, or as far as `length` lasts: then true.
+  bool walk_to(Index i, double& length, CurvePlace& place) const {
+    const ImpactPoint& point = curve_.points[i];
+    const double step = (point.position - place.position).norm();
+    if (step >= length && step > 0) {
+      const SurfacePoint at = between(place.at, point.at, length / step);
+      place = {i, at, position_of(mesh_, at)};
+      return true;
+    }
+    length -= step;
+    place = {i, point.at, point.position};
+    return false;
+  }
   /// Along the covering stretch around a foot, `length` back or forth, or as far as it goes.
   CurvePlace back(const CurvePlace& foot, double length) const {
     CurvePlace place = foot;
-    for (Index i = foot.after;; --i) {
-      const ImpactPoint& point = curve_.points[i];
-      const double step = (point.position - place.position).norm();
-      if (step >= length && step > 0) {
-        const SurfacePoint at = between(place.at, point.at, length / step);
-        return {i, at, position_of(mesh_, at)};
-      }
-      length -= step;
-      place = {i, point.at, point.position};
-      if (!covers(i)) return place;
-    }
+    Index i = foot.after;
+    while (!walk_to(i, length, place) && covers(i)) --i;
+    return place;
   }
   /// `after` of what is returned is that of the first point not passed.
   CurvePlace forth(const CurvePlace& foot, double length) const {
     CurvePlace place = foot;
-    for (Index i = foot.after + 1;; ++i) {
-      if (!covers(i)) return {i, place.at, place.position};
-      const ImpactPoint& point = curve_.points[i];
-      const double step = (point.position - place.position).norm();
-      if (step >= length && step > 0) {
-        const SurfacePoint at = between(place.at, point.at, length / step);
-        return {i, at, position_of(mesh_, at)};
-      }
-      length -= step;
-      place = {i, point.at, point.position};
-    }
+    Index i = foot.after + 1;
+    while (covers(i) && !walk_to(i, length, place)) ++i;
+    place.after = i;
+    return place;
   }
 
   /// The lowest bump from a foot towards the top of the spot that reaches all of it.

@@ -100,7 +100,8 @@ class Planner {
   }
 
  private:
-  /// Closes gaps and rounds corners: bumps first, which may have corners, and what rounding opens by full turns.
+  /// Closes gaps and rounds corners: bumps first, which may have corners, and what rounding opens by full turns; unless
+  /// a radius was asked for, what these do not reach by bumps and loops again.
   void finish(ImpactPlan& plan) {
     const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
     GapLimits limits{.spacing = options_.spacing,

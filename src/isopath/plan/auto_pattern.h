@@ -16,8 +16,8 @@ struct ChosenPlan {
 /// The plan for a user who names no pattern: a spiral where most of the isolines' length is in closed ones, else a
 /// meander. Where that lifts, or is longer than 1.12 area / spacing, a two-way curve is planned besides, and taken if
 /// it lifts less often and is at most 5 % longer, or lifts as often and the other one is more than 10 % longer; lengths
-/// are those on the surface. `values` are the function's at the vertices; the pattern in `options` is not looked at.
-/// Throws what `plan_impact` does.
+/// are those on the surface, where the first one lifts before gaps are closed. `values` are the function's at the
+/// vertices; the pattern in `options` is not looked at. Throws what `plan_impact` does.
 ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
                         const ImpactOptions& options, Progress& progress = Progress::none());
 
