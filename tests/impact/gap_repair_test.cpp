@@ -10,6 +10,7 @@
 
 #include "impact/curve_checks.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/min_radius.h"
 #include "isopath/impact/open_spots.h"
 #include "isopath/impact/ridge_passes.h"
 
@@ -167,6 +168,35 @@ TEST(gap_repair, draws_corners_out_no_farther_than_needed) {
   const double added = length_of(curve, MoveKind::cover) - length_of(before, MoveKind::cover);
   EXPECT_LE(added, 4 * (5 * 0.37 + 0.6) * w);
   EXPECT_GE(added, 4 * 5 * 0.1 * w);
+}
+
+TEST(gap_repair, swells_a_round_curve_without_turning_it_back) {
+  const test::Plate plate{test::planar_grid(15, 15, 24, 24, {.jitter = 0.2})};
+  const double w = 2;
+  const double radius = 0.08 * w;
+  ImpactCurve curve = nested_squares(plate.linker, w);
+  close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = w, .radius = radius});
+  const auto tight_before = keep_min_radius(plate.linker, plate.normals, curve,
+                                            1.5 * radius);  // more than bumps were made for: this opens spots
+  const CoverField cover = distance_from_cover(plate.mesh, curve, w, Progress::none());
+  ASSERT_FALSE(open_spots(cover.field, 0.5 * widest_gap * w, 0.01 * w).empty());
+  const double length_before = length_of(curve, MoveKind::cover);
+  const int changes =
+      close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = w, .radius = radius, .round = true});
+  ASSERT_GT(changes, 0);
+  test::expect_valid(plate.mesh, curve);
+  EXPECT_LE(measure_gap(plate.mesh, curve, w).max, widest_gap * w * 1.005);
+  // h cos² over a width of 2 b is longer than straight on by π² h² / 8 b at most; a full turn by 2 π radius
+  EXPECT_LT(length_of(curve, MoveKind::cover) - length_before, changes * 0.25 * 2 * std::numbers::pi * radius);
+  for (const TightPlace& tight : tight_places(plate.mesh, curve, 0.9 * radius)) {
+    // the plate's corners are out of reach for swells, and full turns there meet the curve near a bend
+    const Vec3 from_middle = (tight.position - Vec3(12, 12, 0)).cwiseAbs();
+    const bool at_corner = (from_middle - Vec3(12, 12, 0)).norm() < 1.5 * w;
+    const bool was = std::any_of(tight_before.begin(), tight_before.end(), [&](const TightPlace& before) {
+      return (before.position - tight.position).norm() < radius;
+    });
+    EXPECT_TRUE(at_corner || was) << tight.position.transpose();
+  }
 }
 
 TEST(gap_repair, sees_with_each_round_what_the_whole_field_shows) {

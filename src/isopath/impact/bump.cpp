@@ -28,6 +28,12 @@ constexpr double largest_turn = 0.4;
 /// A turn of exactly the radius would be drawn tight when its neighbourhood is.
 constexpr double turn_over_radius = 1.1;
 constexpr double turn_step = 0.03;
+/// Swells are tried in steps of this height, up to the highest, and get broader by this factor up to the broadest half
+/// width, in spacings, until they keep the radius.
+constexpr double swell_step = 0.01;
+constexpr double highest_swell = 0.25;
+constexpr double broadening = 1.3;
+constexpr double broadest_swell = 0.5;
 /// From so many cells of a spot the curve is looked for.
 constexpr int most_feet = 5;
 
@@ -82,6 +88,16 @@ class BumpBuilder {
     }
     if (!best || best->left == spot_.cells.size()) return std::nullopt;
     return replacement({best->foot, {best->foot.after + 1, best->foot.at, best->foot.position}, best->points, {}, 0});
+  }
+
+  std::optional<Replacement> best_swell() const {
+    std::optional<Bump> least;
+    for (const CurvePlace& foot : feet()) {
+      auto swell = swell_from(foot);
+      if (swell && (!least || swell->cost < least->cost)) least = std::move(swell);
+    }
+    if (!least) return std::nullopt;
+    return replacement(*least);
   }
 
   std::optional<Replacement> best() const {
@@ -305,6 +321,94 @@ class BumpBuilder {
     return circle;
   }
 
+  /// Places along the curve from half a width behind a foot to half a width before it, evenly spaced; empty where the
+  /// covering stretch is shorter.
+  std::vector<CurvePlace> around(const CurvePlace& foot, double half_width, int steps) const {
+    const CurvePlace end = forth(foot, half_width);
+    CurvePlace at = back(foot, half_width);
+    std::vector<CurvePlace> places = {at};
+    double length = 0;
+    Vec3 last = at.position;
+    for (Index i = at.after + 1; i < end.after; ++i) {
+      length += (curve_.points[i].position - last).norm();
+      last = curve_.points[i].position;
+    }
+    length += (end.position - last).norm();
+    if (length < 1.9 * half_width) return {};
+    for (int k = 1; k < steps; ++k) {
+      at = forth(at, length / steps);
+      at.after -= 1;
+      places.push_back(at);
+    }
+    places.push_back(end);
+    return places;
+  }
+
+  /// The lowest swell that reaches all of the spot: the curve around a foot is shifted towards the top of the spot by
+  /// h cos², which turns by no more than h π² / 2 b² where the curve is straight.
+  std::optional<Bump> swell_from(const CurvePlace& foot) const {
+    const Vec3 aim = spot_.cells.front().position - foot.position;
+    const Vec3& normal = mesh_.face_normal(foot.at.face);
+    const Vec3 aside = (aim - normal.dot(aim) * normal).stableNormalized();
+    for (double height = swell_step; height <= highest_swell; height += swell_step) {
+      const double h = height * spacing_;
+      double half_width = std::max(std::numbers::pi * std::sqrt(0.5 * h * 1.1 * radius_), 0.05 * spacing_);
+      for (; half_width <= broadest_swell * spacing_; half_width *= broadening) {
+        auto swell = swell_of(foot, aside, h, half_width);
+        if (!swell) continue;
+        if (out_of_reach(swell->reached, foot.at.face) == 0) return swell;
+        break;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// None where it would turn too tightly or there is no room.
+  std::optional<Bump> swell_of(const CurvePlace& foot, const Vec3& aside, double height, double half_width) const {
+    const double span = half_width + 0.5 * radius_;  // with what the turns at its ends are measured on
+    const int steps = std::clamp(static_cast<int>(std::ceil(2 * span / (0.25 * radius_))), 8, 64);
+    const std::vector<CurvePlace> places = around(foot, span, steps);
+    if (places.empty()) return std::nullopt;
+    Bump swell;
+    swell.start = places.front();
+    swell.end = places.back();
+    for (int k = 0; k <= steps; ++k) {
+      const double away = std::min(1.0, std::abs(2.0 * k / steps - 1) * span / half_width);
+      const double c = std::cos(0.5 * std::numbers::pi * away);
+      swell.reached.push_back(places[k].position + height * c * c * aside);
+    }
+    if (least_radius(swell.reached, mesh_.face_normal(foot.at.face)) < radius_) return std::nullopt;
+    for (int k = 1; k < steps; ++k) {
+      const NearestPoint there = linker_.locator().nearest(swell.reached[k], height + 0.1 * spacing_);
+      if (!there.at.valid()) return std::nullopt;
+      const Vec3 position = position_of(mesh_, there.at);
+      if ((position - swell.reached[k]).norm() > 0.3 * height) return std::nullopt;  // beyond the rim, over an edge
+      swell.control.push_back(there.at);
+      swell.reached[k] = position;
+    }
+    for (int k = 1; k <= steps; ++k) {
+      swell.cost += (swell.reached[k] - swell.reached[k - 1]).norm();
+      swell.cost -= (places[k].position - places[k - 1].position).norm();
+    }
+    return swell;
+  }
+
+  /// Of the circles through points of a way about half the radius apart, seen along the normal.
+  double least_radius(const std::vector<Vec3>& way, const Vec3& normal) const {
+    double least = infinity;
+    const double step = (way[1] - way[0]).norm();
+    const auto arm = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * radius_ / step)));
+    for (std::size_t i = arm; i + arm < way.size(); ++i) {
+      Vec3 a = way[i] - way[i - arm];
+      Vec3 b = way[i + arm] - way[i];
+      a -= normal.dot(a) * normal;
+      b -= normal.dot(b) * normal;
+      const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+      if (angle > 0) least = std::min(least, 0.25 * (a.norm() + b.norm()) / std::sin(0.5 * angle));
+    }
+    return least;
+  }
+
   std::optional<Replacement> replacement(const Bump& bump) const {
     Replacement replacement;
     replacement.first = bump.start.after;
@@ -341,6 +445,12 @@ std::optional<Replacement> bump_into(const SurfaceLinker& linker, const SmoothNo
                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
                                      const BumpLimits& limits) {
   return BumpBuilder(linker, normals, curve, cover, spot, limits).best();
+}
+
+std::optional<Replacement> swell_into(const SurfaceLinker& linker, const SmoothNormals& normals,
+                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
+                                      const BumpLimits& limits) {
+  return BumpBuilder(linker, normals, curve, cover, spot, limits).best_swell();
 }
 
 std::optional<Replacement> turn_into(const SurfaceLinker& linker, const SmoothNormals& normals,

@@ -30,6 +30,12 @@ std::optional<Replacement> bump_into(const SurfaceLinker& linker, const SmoothNo
                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
                                      const BumpLimits& limits);
 
+/// A stretch of the curve shifted towards an open spot so gently that it turns with no less than the radius: the lowest
+/// swell that has all of the spot in reach. None where there is no such or the surface has no room.
+std::optional<Replacement> swell_into(const SurfaceLinker& linker, const SmoothNormals& normals,
+                                      const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
+                                      const BumpLimits& limits);
+
 /// A full turn on a circle of at least the radius that touches the curve, on the side of an open spot, for curves that
 /// may have no corners: the smallest one that has the spot in reach, or one that has some of it. None where the surface
 /// has no room for one or the curve no direction.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -24,8 +25,8 @@ constexpr double first_loop = 0.575;
 constexpr double bump_margin = 0.005;
 /// No place is overlooked that is farther from the curve than half the widest gap and this, in spacings.
 constexpr double resolution = 0.01;
-/// What a bump leaves open beside it is closed in the next round.
-constexpr int most_rounds = 5;
+/// A swell gives what it takes from the other side of the curve; where that is missed, turns end the to and fro.
+constexpr int rounds_of_swells = 3;
 
 /// The distance from the cover, with what is known of where it stays below a level: no isoline hides in those faces.
 class BoundedField final : public SurfaceFunction {
@@ -82,9 +83,9 @@ class GapCloser {
     int count = 0;
     std::vector<Replacement> changes;
     bool loops = true;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < limits_.most_rounds; ++round) {
       const auto [cover, spots] = loops ? look_everywhere() : look_beside(changes);
-      changes = bumps_and_loops(cover, spots, loops);
+      changes = bumps_and_loops(cover, spots, round, loops);
       if (changes.empty()) break;
       count += replace(mesh_, curve_, changes);
     }
@@ -126,16 +127,25 @@ class GapCloser {
 
   double limit() const { return 0.5 * limits_.widest * limits_.spacing; }
 
-  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, bool& loops) {
+  /// In the form that the limits and the round ask for.
+  std::optional<Replacement> bump_to(const OpenSpot& spot, const CoverField& cover, int round) const {
+    const BumpLimits limits{limit() - bump_margin * limits_.spacing, limits_.spacing, limits_.radius};
+    if (!limits_.round) return bump_into(linker_, normals_, curve_, cover, spot, limits);
+    if (round < rounds_of_swells) {
+      if (auto swell = swell_into(linker_, normals_, curve_, cover, spot, limits)) return swell;
+    }
+    return turn_into(linker_, normals_, curve_, cover, spot, limits);
+  }
+
+  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, int round,
+                                           bool& loops) {
     const double w = limits_.spacing;
     std::vector<Replacement> replacements;
     std::vector<char> wide(mesh_.n_faces(), 0);
     double farthest = 0;
     for (const OpenSpot& spot : spots) {
       progress_.checkpoint();
-      const BumpLimits bump_limits{limit() - bump_margin * w, w, limits_.radius};
-      auto bump = limits_.round ? turn_into(linker_, normals_, curve_, cover, spot, bump_limits)
-                                : bump_into(linker_, normals_, curve_, cover, spot, bump_limits);
+      auto bump = bump_to(spot, cover, round);
       if (bump) replacements.push_back(*std::move(bump));
       if (bump || limits_.round) continue;
       farthest = std::max(farthest, spot.cells.front().distance);

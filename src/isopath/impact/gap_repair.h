@@ -23,15 +23,16 @@ struct GapLimits {
   double widest = widest_gap;                 ///< gaps wider than this are closed, in spacings
   const IntrinsicGeometry* metric = nullptr;  ///< null for lengths in space
   double radius = 0;  ///< corners are rounded with this radius afterwards, mm: bumps go as far as that takes
-  /// The curve is round already and is to stay so: full turns on circles of at least the radius take the place of bumps
-  /// and loops, and what they do not reach stays open.
+  /// The curve is round already and is to stay so: swells and full turns with at least the radius take the place of
+  /// bumps and loops, and what they do not reach stays open.
   bool round = false;
+  int most_rounds = 5;  ///< what a bump leaves open beside it is closed in the next round
 };
 
 /// Closes what passes leave open where fronts meet: at saddles of the field, in sharp corners, inside the last pass
 /// (paper ch. 9.3). Towards a small open spot the curve makes a bump, the paper's fishtail; around a wide one it makes
 /// a loop: it leaves along the shortest way, goes round, and comes back. What is left or opened beside them is closed
-/// in the next of up to five rounds. Returns the number of bumps and loops.
+/// in the next round. Returns the number of bumps and loops.
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                     const GapLimits& limits, Progress& progress = Progress::none());
 
