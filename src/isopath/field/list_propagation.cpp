@@ -10,8 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "isopath/field/vertex_fan.h"
-
 namespace isopath {
 namespace {
 
@@ -63,7 +61,9 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       geometry_(geometry),
       retain_(retain),
       sites_(mesh.n_halfedges()),
+      rings_(mesh, geometry),
       states_(mesh.n_vertices()),
+      distances_(mesh.n_vertices(), infinity),
       source_at_(mesh.n_vertices(), no_index),
       fans_(retain ? mesh.n_halfedges() : 0),
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
@@ -79,15 +79,11 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
     site.twin = mesh.twin(h);
     site.tail = mesh.from(h);
   });
-  for (Index h = 0; h < mesh.n_halfedges(); ++h) states_[sites_[h].tail].total_angle += geometry.angle_at_tail(h);
-  for (Index v = 0; v < mesh.n_vertices(); ++v)
-    states_[v].may_bend = isopath::may_bend(mesh, v, states_[v].total_angle);
-}
-
-std::vector<double> ListPropagation::vertex_distances() const {
-  std::vector<double> distances(states_.size());
-  for (std::size_t v = 0; v < states_.size(); ++v) distances[v] = states_[v].distance;
-  return distances;
+  tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
+    const std::span<const Spoke> ring = rings_.of(v);
+    for (const Spoke& spoke : ring) states_[v].total_angle += spoke.angle;
+    states_[v].may_bend = isopath::may_bend(!is_closed(ring), states_[v].total_angle);
+  });
 }
 
 std::vector<Index> ListPropagation::vertex_roots() const {
@@ -174,10 +170,10 @@ void ListPropagation::push_halfedge(Index halfedge, double least) {
 }
 
 void ListPropagation::offer_vertex(const Offer& offer) {
-  VertexState& state = states_[offer.vertex];
   const double distance = std::max(offer.distance, 0.0);
-  if (!(distance < state.distance)) return;
-  state.distance = distance;
+  if (!(distance < distances_[offer.vertex])) return;
+  VertexState& state = states_[offer.vertex];
+  distances_[offer.vertex] = distance;
   state.root = offer.root;
   state.arrival = offer.arrival;
   const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
@@ -195,55 +191,48 @@ void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block
 
 void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
   const VertexState& from = states_[vertex];
-  const auto offer = [&](Index to, double length, Index back, const Vec2& direction) {
-    const double there = from.distance + length;
-    if (there < states_[to].distance)
-      handed.offers.push_back({to, from.root, there, {back, 0, from.arrival.error, direction}});
-  };
-  const Index first = mesh_.outgoing(vertex);
-  Index h = first;
-  do {
-    const Index next = TriangleMesh::next(h);
-    const Index twin = mesh_.twin(h);
-    if (twin != no_index) {
-      offer(mesh_.from(next), geometry_.length(h), twin, Vec2::UnitX());
+  const std::span<const Spoke> ring = rings_.of(vertex);
+  const double distance = distances_[vertex];
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Spoke& spoke = ring[k];
+    const double there = distance + spoke.length;
+    if (!(there < distances_[spoke.to])) continue;
+    Arrival arrival{no_index, 0, from.arrival.error, Vec2::UnitX()};
+    if (k == 0 && !is_closed(ring)) {
+      arrival.halfedge = TriangleMesh::next(spoke.halfedge);
+      arrival.back = geometry_.apex(arrival.halfedge);
     } else {
-      offer(mesh_.from(next), geometry_.length(h), next, geometry_.apex(next));
+      arrival.halfedge = TriangleMesh::prev(ring[k > 0 ? k - 1 : ring.size() - 1].halfedge);
     }
-    const Index previous = TriangleMesh::prev(h);
-    h = mesh_.twin(previous);
-    if (h == no_index)  // the boundary edge that closes the fan
-      offer(mesh_.from(previous), geometry_.length(previous), previous, Vec2::UnitX());
-  } while (h != no_index && h != first);
+    handed.offers.push_back({spoke.to, from.root, there, arrival});
+  }
 }
 
 void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed) {
   const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
   if (!is_source && !states_[vertex].may_bend) return;
-  Index first = mesh_.outgoing(vertex);
+  const std::span<const Spoke> ring = rings_.of(vertex);
+  std::size_t first = 0;
   BlockedArc behind;
   if (!is_source) {
     const Arrival& arrival = states_[vertex].arrival;
     behind = {std::atan2(std::max(arrival.back.y(), 0.0), arrival.back.x()),
               std::max(std::numbers::pi - angle_slack - arrival.slack, 0.0)};
-    if (mesh_.is_boundary_vertex(vertex)) {
-      for (Index h = first; h != arrival.halfedge; h = mesh_.next_outgoing(h))
-        behind.angle += geometry_.angle_at_tail(h);
-    } else {
-      first = arrival.halfedge;
+    while (ring[first].halfedge != arrival.halfedge) {
+      if (!is_closed(ring)) behind.angle += ring[first].angle;
+      ++first;
     }
+    if (!is_closed(ring)) first = 0;
   }
   const std::span<const BlockedArc> blocked =
       is_source ? std::span<const BlockedArc>(source_arcs_[source_at_[vertex]]) : std::span(&behind, 1);
   if (retain_) {
-    Index h = mesh_.outgoing(vertex);
-    do {
-      fans_[h] = {};
-      h = mesh_.next_outgoing(h);
-    } while (h != no_index && h != mesh_.outgoing(vertex));
+    for (const Spoke& spoke : ring) {
+      if (spoke.halfedge != no_index) fans_[spoke.halfedge] = {};
+    }
   }
-  for_each_free_arc(mesh_, geometry_, vertex, first, total, blocked,
+  for_each_free_arc(ring, first, total, blocked,
                     [&](Index outgoing, double low, double high, bool cut) {
                       if (retain_)
                         fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
@@ -258,7 +247,7 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
                       window.end = std::min(length - interval.begin + rounding_, length);
                       if (!(window.begin < window.end)) return;
                       window.source = Vec2(length, 0) - geometry_.apex(opposite);
-                      window.offset = states_[vertex].distance;
+                      window.offset = distances_[vertex];
                       window.root = states_[vertex].root;
                       window.error = states_[vertex].arrival.error;
                       WindowBlock* block = workshop.blocks.take(1);
@@ -331,7 +320,7 @@ void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Works
   const Index next = TriangleMesh::next(h);
   const Index tail = sites_[leaves_surface ? next : h].tail;
   const Index head = sites_[leaves_surface ? h : next].tail;
-  n = trim_by_vertices(windows, n, site.length, states_[tail].distance, states_[head].distance, margin_);
+  n = trim_by_vertices(windows, n, site.length, distances_[tail], distances_[head], margin_);
   double* begin = workshop.sides[0].data();
   double* end = workshop.sides[1].data();
   if (trim_by_neighbours(windows, n, margin_, begin, end)) {
@@ -385,7 +374,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     double* side_of_end = workshop.sides[1].data();
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
     const Index corner = sites_[previous].tail;
-    if (apex.distance < states_[corner].distance) {
+    if (apex.distance < distances_[corner]) {
       crossing.apex_distance = apex.distance;
       crossing.apex_arrival = arrival_at_apex(windows, apex, triangle, previous);
       if (retain_) {
@@ -484,16 +473,15 @@ void ListPropagation::run_vertices() {
 }
 
 void ListPropagation::fetch_around(Index vertex) const {
-  const Index h = mesh_.outgoing(vertex);
-  __builtin_prefetch(&geometry_.apex(h));
-  for (Index k = 0; k < 3; ++k) __builtin_prefetch(&states_[mesh_.from(h - h % 3 + k)]);
+  const std::span<const Spoke> ring = rings_.of(vertex);
+  for (std::size_t k = 0; k < ring.size(); k += 2) __builtin_prefetch(&ring[k]);
+  __builtin_prefetch(&states_[vertex]);
 }
 
 void ListPropagation::fetch(const Crossing& crossing) const {
   const Index first = crossing.halfedge - crossing.halfedge % 3;
   for (Index h = first; h < first + 3; ++h) {
     __builtin_prefetch(&sites_[h]);
-    __builtin_prefetch(&states_[mesh_.from(h)]);
   }
   for (const WindowBlock* block : crossing.lists) {
     if (block == nullptr) continue;

@@ -14,6 +14,7 @@
 #include "isopath/field/large_pages.h"
 #include "isopath/field/list_step.h"
 #include "isopath/field/source_fronts.h"
+#include "isopath/field/vertex_fan.h"
 #include "isopath/field/window_list.h"
 
 namespace isopath {
@@ -48,7 +49,7 @@ class ListPropagation {
   /// The lower envelope on every edge of all that was propagated; once, after run().
   RetainedWindows take_windows(Progress& progress);
 
-  std::vector<double> vertex_distances() const;
+  const std::vector<double>& vertex_distances() const { return distances_; }
   std::vector<Index> vertex_roots() const;
   /// Per half-edge.
   std::vector<FanArc>& fans() { return fans_; }
@@ -80,7 +81,6 @@ class ListPropagation {
   };
   /// And of a vertex.
   struct alignas(64) VertexState {
-    double distance = infinity;
     double total_angle = 0;
     Arrival arrival;
     Index root = no_index;
@@ -181,7 +181,9 @@ class ListPropagation {
   bool retain_;
   MergeLimits limits_;
   LargeVector<Site> sites_;
+  VertexRings rings_;
   LargeVector<VertexState> states_;
+  std::vector<double> distances_;  ///< per vertex: apart, as lists ask for nothing else
   std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none
   std::vector<std::vector<BlockedArc>> source_arcs_;
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained

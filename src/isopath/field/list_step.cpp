@@ -7,7 +7,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #ifndef ISOPATH_FIELD_SET_BITS
 #define ISOPATH_FIELD_SET_BITS
@@ -89,20 +91,43 @@ struct Windows {
   V ray_y() const { return hn::Abs(y); }
 };
 
+unsigned bits_of(M mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0];
+}
+
+/// Place of the lowest set bit; past all places of any list when there is none.
+std::size_t first_bit(unsigned bits) {
+  return bits != 0 ? static_cast<std::size_t>(std::countr_zero(bits)) : std::numeric_limits<std::size_t>::max() / 2;
+}
+
+double least_of(V v) { return hn::GetLane(hn::MinOfLanes(d, v)); }
+
 /// How to move the lanes of a mask together. (The library's own way is compiled into a copy of its table at every call,
 /// and compressing stores take a hundred cycles on some processors.)
 auto packing(M keep) {
   constexpr hn::RebindToSigned<D> ds;
   HWY_ALIGN static constexpr std::int64_t lane_shifts[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, keep, bits);
-  const auto places = hn::Shr(hn::Set(ds, set_bits[bits[0]]), hn::Load(ds, lane_shifts));
+  const auto places = hn::Shr(hn::Set(ds, set_bits[bits_of(keep)]), hn::Load(ds, lane_shifts));
   return hn::IndicesFromVec(d, hn::And(places, hn::Set(ds, 7)));
 }
 
 /// Stores the kept lanes; roots and errors are those of the windows from `tags` on.
 HWY_INLINE std::size_t store(const WindowArrays& to, M keep, V begin, V end, V x, V y, V offset,
                              const WindowArrays& tags) {
+  if (hn::AllTrue(d, keep)) {
+    hn::StoreU(begin, d, to.begin);
+    hn::StoreU(end, d, to.end);
+    hn::StoreU(x, d, to.x);
+    hn::StoreU(y, d, to.y);
+    hn::StoreU(offset, d, to.offset);
+    if (tags.root != nullptr) {
+      hn::StoreU(hn::LoadU(d, tags.root), d, to.root);
+      hn::StoreU(hn::LoadU(d, tags.error), d, to.error);
+    }
+    return hn::Lanes(d);
+  }
   const auto packed = packing(keep);
   hn::StoreU(hn::TableLookupLanes(begin, packed), d, to.begin);
   hn::StoreU(hn::TableLookupLanes(end, packed), d, to.end);
@@ -264,14 +289,19 @@ double distance(const WindowArrays& w, std::size_t i, double at) {
                     : w.offset[i] + std::sqrt((at - w.x[i]) * (at - w.x[i]) + w.y[i] * w.y[i]);
 }
 
+V indices(std::size_t first) { return hn::Iota(d, static_cast<double>(first)); }
+
 ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeometry& triangle, double margin,
                      double* side_of_begin, double* side_of_end) {
   ApexReach reach;
+  reach.first_right = n;
   const V apex_x = all(triangle.apex.x());
   const V apex_y = all(triangle.apex.y());
-  double nearest = infinity;
-  Index last_left = -1;  // whose beam passes left of the apex
-  Index first_right = -1;
+  // Without branches, which short lists would mispredict one after the other.
+  V nearest_lanes = all(infinity);
+  V nearest_at = zero();
+  std::size_t last_left = 0;  // counted from one: whose beam passes left of the apex
+  std::size_t first_right = n;
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
     const M present = hn::FirstN(d, n - i);
     const Windows w(windows, i, present);
@@ -281,32 +311,25 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
     hn::StoreU(at_end, d, side_of_end + i);
     const M left = hn::And(present, hn::Le(at_begin, zero()));
     const M right = hn::And(present, hn::Ge(at_end, zero()));
-    const M both = hn::And(left, right);
-    reach.n_left += hn::CountTrue(d, left);
-    reach.n_right += hn::CountTrue(d, right);
-    const M only_left = hn::AndNot(right, left);
-    if (!hn::AllFalse(d, only_left)) {
-      for (std::size_t k = std::min(n - i, hn::Lanes(d)); k-- > 0;) {
-        if (side_of_end[i + k] < 0) {
-          last_left = static_cast<Index>(i + k);
-          break;
-        }
-      }
-    }
-    if (first_right < 0 && !hn::AllFalse(d, hn::AndNot(left, right))) {
-      std::size_t k = 0;
-      while (!(side_of_begin[i + k] > 0)) ++k;
-      first_right = static_cast<Index>(i + k);
-    }
-    if (hn::AllFalse(d, both)) continue;
-    HWY_ALIGN double lane[8];
-    hn::Store(hn::IfThenElse(both, w.straight_to(apex_x, apex_y), all(infinity)), d, lane);
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-      if (lane[k] < nearest) {
-        nearest = lane[k];
-        reach.direct = static_cast<Index>(i + k);
-      }
-    }
+    const unsigned left_bits = bits_of(left);
+    const unsigned right_bits = bits_of(right);
+    reach.n_left += static_cast<std::size_t>(std::popcount(left_bits));
+    reach.n_right += static_cast<std::size_t>(std::popcount(right_bits));
+    reach.past_left = left_bits != 0 ? i + std::bit_width(left_bits) : reach.past_left;
+    const unsigned only_left = left_bits & ~right_bits;
+    const unsigned only_right = right_bits & ~left_bits;
+    last_left = only_left != 0 ? i + std::bit_width(only_left) : last_left;
+    first_right = std::min(first_right, i + first_bit(only_right));
+    reach.first_right = std::min(reach.first_right, i + first_bit(right_bits));
+    const V way = hn::IfThenElse(hn::And(left, right), w.straight_to(apex_x, apex_y), all(infinity));
+    const M nearer = hn::Lt(way, nearest_lanes);
+    nearest_at = hn::IfThenElse(nearer, indices(i), nearest_at);
+    nearest_lanes = hn::IfThenElse(nearer, way, nearest_lanes);
+  }
+  const double nearest = least_of(nearest_lanes);
+  if (nearest < infinity) {  // the first of those that are equally near
+    const V at = hn::IfThenElse(hn::Eq(nearest_lanes, all(nearest)), nearest_at, all(infinity));
+    reach.direct = static_cast<Index>(least_of(at));
   }
   if (reach.direct >= 0) {
     const double x = windows.x[reach.direct];
@@ -330,8 +353,8 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
       reach.window = i;
     }
   };
-  if (last_left >= 0) bend(last_left, windows.end[last_left]);
-  if (first_right >= 0) bend(first_right, windows.begin[first_right]);
+  if (last_left > 0) bend(static_cast<Index>(last_left - 1), windows.end[last_left - 1]);
+  if (first_right < n) bend(static_cast<Index>(first_right), windows.begin[first_right]);
   return reach;
 }
 
@@ -379,8 +402,6 @@ std::size_t store_children(const Windows& w, M keep, const Frame& frame, V low, 
   return store(to, keep, low, high, x, y, offset, tags);
 }
 
-V indices(std::size_t first) { return hn::Iota(d, static_cast<double>(first)); }
-
 std::size_t cross_to_left(const WindowArrays& windows, std::size_t n, const StepGeometry& triangle,
                           const ApexReach& apex, const double* side_of_begin, const double* side_of_end,
                           const WindowArrays& children, double& least) {
@@ -393,9 +414,8 @@ std::size_t cross_to_left(const WindowArrays& windows, std::size_t n, const Step
   const V direct = all(apex.direct < 0 ? infinity : apex.direct);
   V nearest = all(infinity);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+  for (std::size_t i = 0; i < apex.past_left; i += hn::Lanes(d)) {
     M keep = hn::And(hn::FirstN(d, n - i), hn::Le(hn::LoadU(d, side_of_begin + i), zero()));
-    if (hn::AllFalse(d, keep)) continue;
     const Windows w(windows, i, keep);
     M to_apex = hn::Ge(hn::LoadU(d, side_of_end + i), zero());
     V end = w.end;
@@ -411,7 +431,7 @@ std::size_t cross_to_left(const WindowArrays& windows, std::size_t n, const Step
     const V high = hn::IfThenElse(to_apex, far, hn::Min(hit(w, end, frame, far), far));
     count += store_children(w, keep, frame, low, high, windows + i, children + count, nearest);
   }
-  least = hn::GetLane(hn::MinOfLanes(d, nearest));
+  least = least_of(nearest);
   return count;
 }
 
@@ -428,9 +448,8 @@ std::size_t cross_to_right(const WindowArrays& windows, std::size_t n, const Ste
   const V direct = all(apex.direct);
   V nearest = all(infinity);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
+  for (std::size_t i = apex.first_right / hn::Lanes(d) * hn::Lanes(d); i < n; i += hn::Lanes(d)) {
     M keep = hn::And(hn::FirstN(d, n - i), hn::Ge(hn::LoadU(d, side_of_end + i), zero()));
-    if (hn::AllFalse(d, keep)) continue;
     const Windows w(windows, i, keep);
     M from_apex = hn::Le(hn::LoadU(d, side_of_begin + i), zero());
     V begin = w.begin;
@@ -446,7 +465,7 @@ std::size_t cross_to_right(const WindowArrays& windows, std::size_t n, const Ste
     const V high = hn::IfThenElse(hn::Eq(w.end, head), far, hn::Min(hit(w, w.end, frame, far), far));
     count += store_children(w, keep, frame, low, high, windows + i, children + count, nearest);
   }
-  least = hn::GetLane(hn::MinOfLanes(d, nearest));
+  least = least_of(nearest);
   return count;
 }
 

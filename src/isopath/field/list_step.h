@@ -45,6 +45,8 @@ struct ApexReach {
   double beaten_from = infinity;  ///< straight ways longer than this are beaten by it
   std::size_t n_left = 0;         ///< windows that reach the left edge
   std::size_t n_right = 0;        ///< windows that reach the right edge
+  std::size_t past_left = 0;      ///< one past the last of those that reach the left edge
+  std::size_t first_right = 0;    ///< the first of those that reach the right edge
 };
 /// Finds the shortest way to the apex; one that is longer by no more than the margin may be as short. Writes on which
 /// side of the begin ray and of the end ray of each window the apex lies: positive on the left.

@@ -76,11 +76,11 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
     envelope.insert(s->second);
   }
   const auto follow_from = [&](Index vertex, double x) {
-    if (states_[vertex].distance == infinity) return;
+    if (distances_[vertex] == infinity) return;
     envelope.insert(
-        along_edge(x, length, states_[vertex].distance, states_[vertex].arrival.error, states_[vertex].root));
+        along_edge(x, length, distances_[vertex], states_[vertex].arrival.error, states_[vertex].root));
   };
-  if (envelope.is_continuous(states_[mesh_.from(canonical)].distance, states_[mesh_.to(canonical)].distance)) {
+  if (envelope.is_continuous(distances_[mesh_.from(canonical)], distances_[mesh_.to(canonical)])) {
     envelope.merge(limits_);
     return;  // ways along the edge are no shorter
   }

@@ -1,5 +1,7 @@
 #include "isopath/field/vertex_fan.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -15,8 +17,25 @@ double hit_fraction(const Vec2& p, const Vec2& q, const Vec2& d) {
 
 }  // namespace
 
-bool may_bend(const TriangleMesh& mesh, Index vertex, double total_angle) {
-  return total_angle > (mesh.is_boundary_vertex(vertex) ? 1 : 2) * std::numbers::pi + angle_slack;
+VertexRings::VertexRings(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) : first_(mesh.n_vertices() + 1) {
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) ++first_[mesh.from(h) + 1];
+  for (Index v = 0; v < mesh.n_vertices(); ++v) first_[v + 1] += first_[v] + (mesh.is_boundary_vertex(v) ? 1 : 0);
+  spokes_.resize(first_.back());
+  tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
+    Spoke* spoke = spokes_.data() + first_[v];
+    const Index first = mesh.outgoing(v);
+    for (Index h = first; h != no_index;) {
+      *spoke++ = {geometry.length(h), geometry.angle_at_tail(h), h, mesh.to(h)};
+      const Index incoming = TriangleMesh::prev(h);
+      h = mesh.twin(incoming);
+      if (h == first) break;
+      if (h == no_index) *spoke++ = {geometry.length(incoming), 0, no_index, mesh.from(incoming)};
+    }
+  });
+}
+
+bool may_bend(bool on_boundary, double total_angle) {
+  return total_angle > (on_boundary ? 1 : 2) * std::numbers::pi + angle_slack;
 }
 
 FanInterval fan_interval(const IntrinsicGeometry& geometry, Index outgoing, double low, double high) {

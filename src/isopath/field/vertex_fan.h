@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 #include "isopath/field/intrinsic_geometry.h"
+#include "isopath/field/large_pages.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
@@ -18,9 +20,36 @@ struct BlockedArc {
 /// Angles are sums of a few arcus tangents, each good to 1e-16; a fan is opened this much wider than its shadow.
 constexpr double angle_slack = 1e-12;
 
+/// An edge at a vertex, and the face that follows it counter-clockwise.
+struct Spoke {
+  double length = 0;
+  double angle = 0;           ///< of the face, at the vertex
+  Index halfedge = no_index;  ///< outgoing, of the face; no_index for the edge that closes the fan of a boundary vertex
+  Index to = no_index;        ///< the vertex at the other end
+};
+
+/// The spokes of every vertex counter-clockwise, side by side in memory: a walk around a vertex through the mesh would
+/// touch as many cache lines as it has steps. On the boundary from the edge that opens the fan to the one that closes
+/// it; elsewhere from the vertex's outgoing half-edge once around. None where no face uses the vertex.
+class VertexRings {
+ public:
+  VertexRings(const TriangleMesh& mesh, const IntrinsicGeometry& geometry);
+
+  std::span<const Spoke> of(Index vertex) const {
+    return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+  }
+
+ private:
+  std::vector<std::size_t> first_;
+  LargeVector<Spoke> spokes_;
+};
+
+/// The vertex is inside the surface.
+inline bool is_closed(std::span<const Spoke> ring) { return !ring.empty() && ring.back().halfedge != no_index; }
+
 /// True when shortest paths may bend at a vertex of this total angle: it is a saddle, or a reflex corner of the
 /// boundary.
-bool may_bend(const TriangleMesh& mesh, Index vertex, double total_angle);
+bool may_bend(bool on_boundary, double total_angle);
 
 /// Where a fan from the tail of `outgoing`, from direction `low` to `high`, meets the opposite half-edge, in its frame.
 /// Directions are measured from `outgoing`; not positive or infinite ones stand for the sides of the face.
@@ -32,15 +61,16 @@ FanInterval fan_interval(const IntrinsicGeometry& geometry, Index outgoing, doub
 
 /// Calls visit(outgoing half-edge, low, high, cut) for every part of the faces around a vertex that no arc blocks;
 /// `low` is zero where the part begins at the face's side, and `cut` tells that it ends before the other. Arcs are
-/// measured from the outgoing half-edge `first`, which is the vertex's first one on the boundary.
+/// measured from the spoke of number `first`, which is 0 on the boundary; `total` is the sum of all angles.
 template <class Visit>
-void for_each_free_arc(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, Index vertex, Index first,
-                       double total, std::span<const BlockedArc> blocked, Visit&& visit) {
-  const int turns = mesh.is_boundary_vertex(vertex) ? 0 : 1;
+void for_each_free_arc(std::span<const Spoke> ring, std::size_t first, double total,
+                       std::span<const BlockedArc> blocked, Visit&& visit) {
+  const int turns = is_closed(ring) ? 1 : 0;
   double start = 0;
-  Index h = first;
-  do {
-    const double angle = geometry.angle_at_tail(h);
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Spoke& spoke = ring[first + k < ring.size() ? first + k : first + k - ring.size()];
+    if (spoke.halfedge == no_index) break;
+    const double angle = spoke.angle;
     const auto hides_face = [&](const BlockedArc& arc) {
       return arc.angle - arc.half_width <= start && start + angle <= arc.angle + arc.half_width;
     };
@@ -61,12 +91,11 @@ void for_each_free_arc(const TriangleMesh& mesh, const IntrinsicGeometry& geomet
         low = past;
         continue;
       }
-      visit(h, low, high, high < angle);
+      visit(spoke.halfedge, low, high, high < angle);
       low = high;
     }
     start += angle;
-    h = mesh.next_outgoing(h);
-  } while (h != no_index && h != first);
+  }
 }
 
 }  // namespace isopath

@@ -11,8 +11,7 @@ namespace isopath {
 namespace {
 
 constexpr std::size_t chunk_doubles = 1 << 16;
-constexpr std::size_t header_doubles = 8;  // keeps the arrays on their own cache lines
-static_assert(sizeof(WindowBlock) <= header_doubles * sizeof(double));
+static_assert(sizeof(WindowBlock) <= WindowBlock::header_doubles * sizeof(double));
 
 /// Four classes to a doubling waste an eighth on average.
 std::size_t class_of(std::size_t lanes) {
@@ -27,15 +26,6 @@ std::size_t lanes_of(std::size_t size_class) {
 }
 
 }  // namespace
-
-WindowArrays WindowArrays::at(double* first, std::size_t capacity, bool tagged) {
-  WindowArrays arrays{first, first + capacity, first + 2 * capacity, first + 3 * capacity, first + 4 * capacity};
-  if (tagged) {
-    arrays.root = first + 5 * capacity;
-    arrays.error = first + 6 * capacity;
-  }
-  return arrays;
-}
 
 void WindowArrays::copy(std::size_t n, const WindowArrays& to) const {
   const auto copy_array = [n](const double* from, double* into) {
@@ -86,7 +76,8 @@ void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, 
     const double* const first = from_a ? a.begin + i : b.begin + j;
     const double* const past = from_a ? a.begin + n_a : b.begin + n_b;
     const double other = from_a ? b.begin[j] : a.begin[i];
-    const double* const end = std::find_if(first, past, [&](double x) { return from_a ? x > other : x >= other; });
+    const auto behind = [&](double x) { return from_a ? x > other : x >= other; };
+    const double* const end = behind(past[-1]) ? std::find_if(first, past, behind) : past;
     const auto run = static_cast<std::size_t>(end - first);
     (from_a ? a + i : b + j).copy(run, to + (i + j));
     (from_a ? i : j) += run;
@@ -106,15 +97,13 @@ void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& t
 double* WindowMemory::take(std::size_t n) {
   if (left_ < n + WindowBlock::lanes) {
     left_ = std::max(chunk_doubles, n + WindowBlock::lanes);
-    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_));
-    fresh_ = chunks_.back().get();
+    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_ + 8));
+    fresh_ = reinterpret_cast<double*>((reinterpret_cast<std::uintptr_t>(chunks_.back().get()) + 63) / 64 * 64);
     bytes_ += left_ * sizeof(double);
   }
   left_ -= n;
   return std::exchange(fresh_, fresh_ + n);
 }
-
-double* WindowBlock::storage() { return reinterpret_cast<double*>(this) + header_doubles; }
 
 WindowBlock* WindowBlocks::take(std::size_t size) {
   const std::size_t size_class = class_of((size + 2 * WindowBlock::lanes - 1) / WindowBlock::lanes);
@@ -125,7 +114,7 @@ WindowBlock* WindowBlocks::take(std::size_t size) {
     return block;
   }
   const std::size_t capacity = lanes_of(size_class) * WindowBlock::lanes;
-  const std::size_t needed = header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
+  const std::size_t needed = WindowBlock::header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
   auto* block = new (memory_.take(needed)) WindowBlock;
   block->capacity = static_cast<Index>(capacity);
   return block;

@@ -26,7 +26,15 @@ struct WindowArrays {
   static constexpr int count = 5;
   static constexpr int tagged_count = 7;
   /// Consecutive arrays of this capacity.
-  static WindowArrays at(double* first, std::size_t capacity, bool tagged);
+  static WindowArrays at(double* first, std::size_t capacity, bool tagged) {
+    return {first,
+            first + capacity,
+            first + 2 * capacity,
+            first + 3 * capacity,
+            first + 4 * capacity,
+            tagged ? first + 5 * capacity : nullptr,
+            tagged ? first + 6 * capacity : nullptr};
+  }
   /// The arrays from element i on.
   WindowArrays operator+(std::size_t i) const {
     return {begin + i, end + i, x + i, y + i, offset + i, root ? root + i : nullptr, error ? error + i : nullptr};
@@ -53,7 +61,8 @@ struct WindowBlock {
   Index capacity = 0;  ///< a multiple of `lanes`; the last `lanes` places are for vector instructions to scribble on
   static constexpr Index lanes = 8;
 
-  double* storage();
+  static constexpr std::size_t header_doubles = 8;  ///< keeps the arrays on their own cache lines
+  double* storage() { return reinterpret_cast<double*>(this) + header_doubles; }
 };
 
 /// Memory that is handed out piece after piece and given back as a whole.
