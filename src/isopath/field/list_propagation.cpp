@@ -197,6 +197,7 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
     const Spoke& spoke = ring[k];
     const double there = distance + spoke.length;
     if (!(there < distances_[spoke.to])) continue;
+    __builtin_prefetch(&states_[spoke.to], 1);
     Arrival arrival{no_index, 0, from.arrival.error, Vec2::UnitX()};
     if (k == 0 && !is_closed(ring)) {
       arrival.halfedge = TriangleMesh::next(spoke.halfedge);
@@ -208,7 +209,7 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
   }
 }
 
-void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed) {
+void ListPropagation::find_fans(Index vertex, Handed& handed) {
   const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
   if (!is_source && !states_[vertex].may_bend) return;
@@ -232,31 +233,36 @@ void ListPropagation::send_fan(Index vertex, Workshop& workshop, Handed& handed)
       if (spoke.halfedge != no_index) fans_[spoke.halfedge] = {};
     }
   }
-  for_each_free_arc(ring, first, total, blocked,
-                    [&](Index outgoing, double low, double high, bool cut) {
-                      if (retain_)
-                        fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
-                      const Index opposite = TriangleMesh::next(outgoing);
-                      const Index place = waiting_place(opposite);
-                      if (place == no_index) return;
-                      const FanInterval interval = fan_interval(geometry_, outgoing, low, cut ? high : infinity);
-                      const double length = geometry_.length(opposite);
-                      // From a corner next to the opposite edge many directions pass within a rounding error.
-                      Window window;
-                      window.begin = std::max(length - interval.end - rounding_, 0.0);
-                      window.end = std::min(length - interval.begin + rounding_, length);
-                      if (!(window.begin < window.end)) return;
-                      window.source = Vec2(length, 0) - geometry_.apex(opposite);
-                      window.offset = distances_[vertex];
-                      window.root = states_[vertex].root;
-                      window.error = states_[vertex].arrival.error;
-                      WindowBlock* block = workshop.blocks.take(1);
-                      workshop.blocks.arrays(block).set(0, window);
-                      block->size = 1;
-                      block->least = window.min_distance();
-                      put_down(place, from_corner, block);
-                      handed.fans.emplace_back(place, block->least);
-                    });
+  for_each_free_arc(ring, first, total, blocked, [&](Index outgoing, double low, double high, bool cut) {
+    if (retain_) fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
+    handed.fans.push_back({vertex, outgoing, low, cut ? high : infinity});
+    __builtin_prefetch(&sites_[outgoing]);
+    __builtin_prefetch(&sites_[TriangleMesh::next(outgoing)]);
+  });
+}
+
+void ListPropagation::send_fan(const Fan& fan, Workshop& workshop, Handed& handed) {
+  const Site& outgoing = sites_[fan.outgoing];
+  const Site& opposite = sites_[TriangleMesh::next(fan.outgoing)];
+  const Index place = waiting_place(TriangleMesh::next(fan.outgoing));
+  if (place == no_index) return;
+  __builtin_prefetch(&sites_[place], 1);
+  const FanInterval interval = fan_interval(outgoing.length, outgoing.apex, opposite.length, fan.low, fan.high);
+  // From a corner next to the opposite edge many directions pass within a rounding error.
+  Window window;
+  window.begin = std::max(opposite.length - interval.end - rounding_, 0.0);
+  window.end = std::min(opposite.length - interval.begin + rounding_, opposite.length);
+  if (!(window.begin < window.end)) return;
+  window.source = Vec2(opposite.length, 0) - opposite.apex;
+  window.offset = distances_[fan.vertex];
+  window.root = states_[fan.vertex].root;
+  window.error = states_[fan.vertex].arrival.error;
+  WindowBlock* block = workshop.blocks.take(1);
+  workshop.blocks.arrays(block).set(0, window);
+  block->size = 1;
+  block->least = window.min_distance();
+  put_down(place, from_corner, block);
+  handed.sent.emplace_back(place, block->least);
 }
 
 void ListPropagation::Workshop::make_sides(std::size_t n) {
@@ -375,6 +381,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
     const Index corner = sites_[previous].tail;
     if (apex.distance < distances_[corner]) {
+      __builtin_prefetch(&states_[corner], 1);
       crossing.apex_distance = apex.distance;
       crossing.apex_arrival = arrival_at_apex(windows, apex, triangle, previous);
       if (retain_) {
@@ -458,17 +465,19 @@ void ListPropagation::run_vertices() {
       Handed& handed = handed_[part];
       handed.offers.clear();
       handed.fans.clear();
+      handed.sent.clear();
       const std::size_t end = std::min(active_.size(), (part + 1) * vertices_at_a_time);
       for (std::size_t i = part * vertices_at_a_time; i < end; ++i) {
         if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
         relax_edges(active_[i], handed);
-        send_fan(active_[i], workshop, handed);
+        find_fans(active_[i], handed);
       }
+      for (const Fan& fan : handed.fans) send_fan(fan, workshop, handed);
     }
   });
   for (std::size_t part = 0; part < n_parts; ++part) {
     for (const Offer& offer : handed_[part].offers) offer_vertex(offer);
-    for (const auto& [place, least] : handed_[part].fans) push_halfedge(place, least);
+    for (const auto& [place, least] : handed_[part].sent) push_halfedge(place, least);
   }
 }
 

@@ -93,10 +93,19 @@ class ListPropagation {
     double distance;
     Arrival arrival;
   };
-  /// What some vertices hand on: to their neighbours, and to half-edges where their fans wait.
+  /// A part of a vertex's fan, in one face: between two directions measured from the outgoing half-edge, as
+  /// fan_interval() takes them.
+  struct Fan {
+    Index vertex;
+    Index outgoing;
+    double low;
+    double high;
+  };
+  /// What some vertices hand on: to their neighbours, into their faces, and the half-edges where these fans wait.
   struct Handed {
     std::vector<Offer> offers;
-    std::vector<std::pair<Index, double>> fans;
+    std::vector<Fan> fans;
+    std::vector<std::pair<Index, double>> sent;
   };
   /// A list that crossed, with its windows behind it in memory.
   struct KeptList {
@@ -129,8 +138,8 @@ class ListPropagation {
     bool tagged;
     EdgeEnvelope envelope;
     std::vector<WindowBlock*> waiting;
-    std::vector<double> arrays[4];  ///< of scratch(): two for gather(), one for news(), one for merged()
-    std::vector<double> sides[2];
+    LargeVector<double> arrays[4];  ///< of scratch(): two for gather(), one for news(), one for merged()
+    LargeVector<double> sides[2];
     WindowMemory kept;
   };
   /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
@@ -149,7 +158,8 @@ class ListPropagation {
   float slack_at(double distance) const { return static_cast<float>(std::min(rounding_ / distance, full_turn)); }
 
   void relax_edges(Index vertex, Handed& handed) const;
-  void send_fan(Index vertex, Workshop& workshop, Handed& handed);
+  void find_fans(Index vertex, Handed& handed);
+  void send_fan(const Fan& fan, Workshop& workshop, Handed& handed);
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
 
   void fetch_around(Index vertex) const;

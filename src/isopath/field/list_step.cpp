@@ -78,6 +78,10 @@ struct Windows {
     const M circle = hn::Or(hn::Lt(than, zero()), hn::Gt(way, square(than)));
     return any_line ? hn::Or(hn::And(line, hn::Gt(way, than)), hn::AndNot(line, circle)) : circle;
   }
+  M longer_or_equal(V way, V than) const {
+    const M circle = hn::Or(hn::Le(than, zero()), hn::Ge(way, square(than)));
+    return any_line ? hn::Or(hn::And(line, hn::Ge(way, than)), hn::AndNot(line, circle)) : circle;
+  }
   /// Distance of a point beyond the half-edge, straight on.
   V straight_to(V px, V py) const {
     const V circle = hn::Add(offset, hn::Sqrt(hn::Add(square(hn::Sub(px, x)), square(hn::Sub(py, y)))));
@@ -199,6 +203,19 @@ std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double 
   return kept;
 }
 
+struct Winners {
+  M a, b;
+};
+/// Which of two is nearer by more than the slack at a point of the half-edge.
+Winners winners(const Windows& a, const Windows& b, V at, V slack, M present) {
+  const V b_way = b.distance(at);
+  const V rest = hn::Sub(b_way, a.offset);
+  const V way = a.way_to(at);
+  const V below = hn::Sub(rest, slack);
+  const V above = hn::Add(rest, slack);
+  return {hn::AndNot(a.longer_or_equal(way, below), present), hn::And(present, a.longer(way, above))};
+}
+
 bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margin, double* begin, double* end) {
   // Most lists overlap only at ridges, two by two; there, the vertices do the work sooner or later.
   std::size_t crowded = 0;
@@ -220,14 +237,8 @@ bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margi
     const V high = hn::Min(a.end, b.end);
     const M overlap = hn::And(pairs, hn::Lt(low, high));
     if (!hn::AllFalse(d, overlap)) {
-      const V a_low = a.distance(low);
-      const V b_low = b.distance(low);
-      const V a_high = a.distance(high);
-      const V b_high = b.distance(high);
-      const M a_wins_low = hn::And(overlap, hn::Lt(a_low, hn::Sub(b_low, slack)));
-      const M b_wins_low = hn::And(overlap, hn::Lt(b_low, hn::Sub(a_low, slack)));
-      const M a_wins_high = hn::And(overlap, hn::Lt(a_high, hn::Sub(b_high, slack)));
-      const M b_wins_high = hn::And(overlap, hn::Lt(b_high, hn::Sub(a_high, slack)));
+      const auto [a_wins_low, b_wins_low] = winners(a, b, low, slack, overlap);
+      const auto [a_wins_high, b_wins_high] = winners(a, b, high, slack, overlap);
       // positive where the ray of a comes from the left of that of b
       const V low_order = hn::Sub(hn::Mul(a.ray_x(low), b.ray_y()), hn::Mul(a.ray_y(), b.ray_x(low)));
       const V high_order = hn::Sub(hn::Mul(a.ray_x(high), b.ray_y()), hn::Mul(a.ray_y(), b.ray_x(high)));

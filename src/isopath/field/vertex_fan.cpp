@@ -38,13 +38,11 @@ bool may_bend(bool on_boundary, double total_angle) {
   return total_angle > (on_boundary ? 1 : 2) * std::numbers::pi + angle_slack;
 }
 
-FanInterval fan_interval(const IntrinsicGeometry& geometry, Index outgoing, double low, double high) {
-  const double length = geometry.length(TriangleMesh::next(outgoing));
+FanInterval fan_interval(double length, const Vec2& apex, double opposite_length, double low, double high) {
   const auto at_angle = [&](double angle) {
-    const Vec2 direction(std::cos(angle), std::sin(angle));
-    return length * hit_fraction(Vec2(geometry.length(outgoing), 0), geometry.apex(outgoing), direction);
+    return opposite_length * hit_fraction(Vec2(length, 0), apex, Vec2(std::cos(angle), std::sin(angle)));
   };
-  return {low > 0 ? at_angle(low) : 0, high < infinity ? at_angle(high) : length};
+  return {low > 0 ? at_angle(low) : 0, high < infinity ? at_angle(high) : opposite_length};
 }
 
 }  // namespace isopath

@@ -51,13 +51,14 @@ inline bool is_closed(std::span<const Spoke> ring) { return !ring.empty() && rin
 /// boundary.
 bool may_bend(bool on_boundary, double total_angle);
 
-/// Where a fan from the tail of `outgoing`, from direction `low` to `high`, meets the opposite half-edge, in its frame.
-/// Directions are measured from `outgoing`; not positive or infinite ones stand for the sides of the face.
+/// Where a fan from the tail of a half-edge of this length, from direction `low` to `high`, meets the opposite
+/// half-edge, in its frame; `apex` and directions are those in the outgoing one's frame. Directions that are not
+/// positive or infinite stand for the sides of the face.
 struct FanInterval {
   double begin = 0;
   double end = 0;
 };
-FanInterval fan_interval(const IntrinsicGeometry& geometry, Index outgoing, double low, double high);
+FanInterval fan_interval(double length, const Vec2& apex, double opposite_length, double low, double high);
 
 /// Calls visit(outgoing half-edge, low, high, cut) for every part of the faces around a vertex that no arc blocks;
 /// `low` is zero where the part begins at the face's side, and `cut` tells that it ends before the other. Arcs are

@@ -97,8 +97,7 @@ void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& t
 double* WindowMemory::take(std::size_t n) {
   if (left_ < n + WindowBlock::lanes) {
     left_ = std::max(chunk_doubles, n + WindowBlock::lanes);
-    chunks_.push_back(std::make_unique_for_overwrite<double[]>(left_ + 8));
-    fresh_ = reinterpret_cast<double*>((reinterpret_cast<std::uintptr_t>(chunks_.back().get()) + 63) / 64 * 64);
+    fresh_ = chunks_.emplace_back(left_).data();
     bytes_ += left_ * sizeof(double);
   }
   left_ -= n;
@@ -117,11 +116,12 @@ WindowBlock* WindowBlocks::take(std::size_t size) {
   const std::size_t needed = WindowBlock::header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
   auto* block = new (memory_.take(needed)) WindowBlock;
   block->capacity = static_cast<Index>(capacity);
+  block->size_class = static_cast<Index>(size_class);
   return block;
 }
 
 void WindowBlocks::give_back(WindowBlock* block) {
-  const std::size_t size_class = class_of(static_cast<std::size_t>(block->capacity) / WindowBlock::lanes);
+  const auto size_class = static_cast<std::size_t>(block->size_class);
   if (size_class >= free_.size()) free_.resize(size_class + 1);
   free_[size_class].push_back(block);
 }

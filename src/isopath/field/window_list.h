@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
+#include "isopath/field/large_pages.h"
 #include "isopath/field/window.h"
 
 namespace isopath {
@@ -59,6 +59,7 @@ struct WindowBlock {
   double least = infinity;      ///< bound on the distances of its windows from below
   Index size = 0;
   Index capacity = 0;  ///< a multiple of `lanes`; the last `lanes` places are for vector instructions to scribble on
+  Index size_class = 0;
   static constexpr Index lanes = 8;
 
   static constexpr std::size_t header_doubles = 8;  ///< keeps the arrays on their own cache lines
@@ -73,7 +74,7 @@ class WindowMemory {
   std::size_t bytes() const { return bytes_; }
 
  private:
-  std::vector<std::unique_ptr<double[]>> chunks_;
+  std::vector<LargeVector<double>> chunks_;  ///< on whole cache lines
   double* fresh_ = nullptr;
   std::size_t left_ = 0;  ///< doubles from fresh_ on
   std::size_t bytes_ = 0;
