@@ -194,7 +194,7 @@ class ListPropagation {
   VertexRings rings_;
   LargeVector<VertexState> states_;
   std::vector<double> distances_;  ///< per vertex: apart, as lists ask for nothing else
-  std::vector<Index> source_at_;  ///< per vertex: index into source_arcs_, or none
+  std::vector<Index> source_at_;   ///< per vertex: index into source_arcs_, or none
   std::vector<std::vector<BlockedArc>> source_arcs_;
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained
   std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained

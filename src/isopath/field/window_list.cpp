@@ -113,7 +113,8 @@ WindowBlock* WindowBlocks::take(std::size_t size) {
     return block;
   }
   const std::size_t capacity = lanes_of(size_class) * WindowBlock::lanes;
-  const std::size_t needed = WindowBlock::header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
+  const std::size_t needed =
+      WindowBlock::header_doubles + (tagged_ ? WindowArrays::tagged_count : WindowArrays::count) * capacity;
   auto* block = new (memory_.take(needed)) WindowBlock;
   block->capacity = static_cast<Index>(capacity);
   block->size_class = static_cast<Index>(size_class);
