@@ -139,10 +139,10 @@ TEST(Blend, OfADiscIsTheDistance) {
   EXPECT_EQ(blended.n_levels, 10);
   EXPECT_LT(mesh.position(blended.root).norm(), 0.1);
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    // pulled up to half a level where it ends, and nowhere else
+    // pulled up by half a level or a little more where it ends, and nowhere else
     const double distance = field.vertex_distances()[v];
     const double off = blended.values[v] - distance;
-    EXPECT_NEAR(off, 0, mesh.position(v).norm() < 0.7 ? 0.5 : 0.03) << mesh.position(v).transpose();
+    EXPECT_NEAR(off, 0, mesh.position(v).norm() < 0.7 ? 0.6 : 0.03) << mesh.position(v).transpose();
   }
 }
 
@@ -183,6 +183,28 @@ TEST(Blend, IsNoHigherThanTheWidestPlaceAsksFor) {
   EXPECT_LE(*std::max_element(blended.values.begin(), blended.values.end()), 3.5);
 }
 
+TEST(Blend, LetsTipsReachOutForWhatRoundingTakesOff) {
+  const TriangleMesh mesh = fine(test::planar_grid(20, 20, 20, 20), 2);
+  const ExactField field = boundary_field(mesh);
+  const BlendedField sharp = blend(field, {.spacing = 2});
+  const BlendedField round = blend(field, {.spacing = 2, .radius = 0.3});
+  ASSERT_EQ(sharp.spacing, round.spacing);
+  int higher = 0;
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    const Vec3& p = mesh.position(v);
+    const double off_diagonal = std::min(std::abs(p.x() - p.y()), std::abs(20 - p.x() - p.y()));
+    if (mesh.is_boundary_vertex(v) || (p - Vec3(10, 10, 0)).norm() < 3) continue;
+    if (off_diagonal < 1e-9) {
+      // a right angle loses 0.41 radii, of which the distance grows by half √2 along the diagonal, a sharper tip more
+      EXPECT_GE(round.values[v] - sharp.values[v], 0.29 * 0.3) << p.transpose();
+      ++higher;
+    } else if (off_diagonal > 2.6) {
+      EXPECT_NEAR(round.values[v], sharp.values[v], 1e-3) << p.transpose();
+    }
+  }
+  EXPECT_GT(higher, 20);
+}
+
 TEST(Blend, IsTheSameEachTime) {
   const TriangleMesh mesh = fine(dumbbell(), 1);
   const ExactField field = boundary_field(mesh);
@@ -195,6 +217,7 @@ TEST(Blend, WantsTheWholeBoundary) {
   corner.add_vertex(mesh, 0);
   EXPECT_THROW(blend(ExactField::compute(mesh, corner), {.spacing = 1}), Error);
   EXPECT_THROW(blend(boundary_field(mesh), {}), Error);
+  EXPECT_THROW(blend(boundary_field(mesh), {.spacing = 1, .radius = -1}), Error);
 }
 
 TEST(Blend, OfASphereEndsOppositeItsSource) {

@@ -11,6 +11,8 @@
 #include "isopath/contour/paper_blend.h"
 #include "isopath/contour/spokes.h"
 #include "isopath/core/error.h"
+#include "isopath/field/smooth_field.h"
+#include "isopath/field/surface_laplacian.h"
 
 namespace isopath {
 namespace {
@@ -89,11 +91,12 @@ void spread_down(const TriangleMesh& mesh, double fall, std::vector<double>& val
 
 class LeastBlend {
  public:
-  LeastBlend(const ExactField& field, double spacing, const Progress& progress)
+  LeastBlend(const ExactField& field, const BlendOptions& options, const Progress& progress)
       : field_(field),
         mesh_(field.mesh()),
         distance_(field.vertex_distances()),
-        spacing_(spacing),
+        spacing_(options.spacing),
+        radius_(options.radius),
         progress_(progress) {}
 
   BlendedField run() {
@@ -104,15 +107,7 @@ class LeastBlend {
     raise_axis();
     BlendedField result;
     result.values.assign(distance_.begin(), distance_.end());
-    std::vector<double> raise(mesh_.n_vertices(), 0.0);
-    for (Index v = 0; v < mesh_.n_vertices(); ++v) {
-      if (spokes_[v].end.valid()) raise[v] = raise_at(v);
-    }
-    // neighbouring spokes may end at different branches of the axis: no jumps between them
-    std::vector<double> pulls = raise;
-    for (double& pull : pulls) pull = std::min(pull, highest_pull * spacing_);
-    spread_down(mesh_, 1, pulls, progress_);
-    for (Index v = 0; v < mesh_.n_vertices(); ++v) raise[v] = std::max(raise[v], pulls[v]);
+    const std::vector<double> raise = raises();
     for (Index v = 0; v < mesh_.n_vertices(); ++v) {
       if (spokes_[v].end.valid()) result.values[v] += raise[v];
     }
@@ -133,9 +128,14 @@ class LeastBlend {
   /// to the next level, so that none flickers where the axis is level.
   static constexpr double axis_gap = 1.03;
   static constexpr double highest_pull = 0.485;
+  static constexpr double most_for_needles = 0.12;
+  static constexpr double most_pull = highest_pull + most_for_needles;
   /// How steeply what is raised falls off along the axis: steeper than the distance itself, or a single pull would
   /// reach as far as that rises.
   static constexpr double axis_fall = 1.5;
+  /// How far what is raised beyond pulls is smoothed, and how much lower that may leave it.
+  static constexpr double smoothing_in_spacings = 0.25;
+  static constexpr double most_smoothed_off = 0.2;
 
   /// The vertex farthest from the sources; of several as far, the one nearest to their middle.
   void find_roots() {
@@ -233,9 +233,25 @@ class LeastBlend {
   }
 
   /// The next level is to cross the axis half a gap farther along it than where the gap to the level before, or to the
-  /// boundary's corner, is as wide as allowed: the distance has grown only by the axis' slope there.
+  /// boundary's corner, is as wide as allowed, and by what rounding takes off the tip besides: the distance has grown
+  /// only by the axis' slope there.
   double own_pull(Index v) const {
-    return spacing_ * std::clamp(0.5 - 0.5 * axis_gap * spokes_[v].axis_slope, 0.0, highest_pull);
+    const double slope = spokes_[v].axis_slope;
+    // needles lose most; along a slope, a pull of more than half a level lets none flicker
+    const double highest = highest_pull + std::min(1.5 * slope, most_for_needles);
+    double pull = 0;
+    for (int round = 0; round < 3; ++round)
+      pull = std::clamp(0.5 - slope * (0.5 * axis_gap - rounded_off(spokes_[v], pull)), 0.0, highest);
+    return spacing_ * pull;
+  }
+
+  /// What rounding takes off a tip that is pulled by so much, in spacings. The axis leaves the fronts by the angle
+  /// whose sine is its slope; the pull ends in half a gap, or at the boundary, so that levels turn towards the tip.
+  double rounded_off(const Spoke& spoke, double pull) const {
+    const double between = std::asin(std::clamp(spoke.axis_slope, 0.01, 1.0));
+    const double steepness = pull / std::clamp(spoke.length / spacing_, 0.2, 0.5 * axis_gap);
+    const double turned = std::atan(steepness / (1 + steepness) * std::tan(std::min(between, 1.5)));
+    return radius_ / spacing_ * (1 / std::sin(std::max(between - turned, 0.01)) - 1);
   }
 
   /// Raises the axis where it falls on the way to the root, island by island, and spreads what is raised.
@@ -285,24 +301,57 @@ class LeastBlend {
     return raised;
   }
 
+  /// Pulls are what they are, and what is raised besides is smoothed: neighbouring spokes may end at different
+  /// branches of the axis, and levels would have kinks where they do.
+  std::vector<double> raises() const {
+    std::vector<double> pull(mesh_.n_vertices(), 0.0);
+    std::vector<double> more(mesh_.n_vertices(), 0.0);
+    std::vector<double> free(mesh_.n_vertices(), 1.0);
+    for (Index v = 0; v < mesh_.n_vertices(); ++v) {
+      if (mesh_.is_boundary_vertex(v) || distance_[v] == 0) free[v] = 0;
+      if (!spokes_[v].end.valid()) continue;
+      pull[v] = handed_down(v, own_pull(v));
+      more[v] = std::max(0.0, raise_at(v) - pull[v]);
+    }
+    const std::vector<double> smooth = diffused(
+        surface_laplacian(mesh_, progress_), more,
+        {.width = smoothing_in_spacings * spacing_, .steps = 2, .local = free, .conserve_volume = false}, progress_);
+    // ways may not fall below the level they lead over, which is half a spacing lower
+    for (Index v = 0; v < mesh_.n_vertices(); ++v)
+      pull[v] += std::max(smooth[v], more[v] - most_smoothed_off * spacing_);
+    return pull;
+  }
+
   double raise_at(Index v) const {
     const Spoke& spoke = spokes_[v];
     const Triangle& corners = mesh_.triangle(spoke.end.face);
     double wanted = 0;
-    for (int i = 0; i < 3; ++i) wanted += spoke.end.barycentric[i] * wanted_[corners[i]];
+    for (int i = 0; i < 3; ++i) {
+      // corners beside the axis stand for their own spokes' ends on it
+      wanted += spoke.end.barycentric[i] * std::max(wanted_[corners[i]], crest_[corners[i]]);
+    }
     const double raise = std::max(0.0, wanted - spoke.length);
-    // a pull ends half a spacing from the axis, so that it moves no level there; what is raised by more is spread wide
-    const double half = 0.5 * axis_gap * spacing_;
     // a pull at a spoke that ends anywhere is meant for a branch nearby
-    if (raise <= half && own_pull(v) == 0) return 0;
-    const double band = std::min(spoke.length, half + 3 * std::max(0.0, raise - half));
-    return raise * std::max(0.0, 1 - (spoke.length - distance_[v]) / band);
+    if (raise <= most_pull * spacing_ && own_pull(v) == 0) return 0;
+    return handed_down(v, raise);
   }
+
+  /// A pull ends half a spacing from the axis, so that it moves no level there; what is raised by more is spread wide.
+  double handed_down(Index v, double raise) const {
+    const Spoke& spoke = spokes_[v];
+    const double band = std::min(spoke.length, pull_width() + 3 * std::max(0.0, raise - most_pull * spacing_));
+    // level at the rim of the band, where a kink would show on triangles, and even from there to the axis
+    constexpr double rim = 0.3;
+    const double t = std::max(0.0, 1 - (spoke.length - distance_[v]) / band);
+    return raise * (t < rim ? t * t / rim : 2 * t - rim) / (2 - rim);
+  }
+  double pull_width() const { return 0.55 * axis_gap * spacing_; }
 
   const ExactField& field_;
   const TriangleMesh& mesh_;
   std::span<const double> distance_;
   double spacing_;
+  double radius_;
   const Progress& progress_;
   std::vector<Spoke> spokes_;
   std::vector<Index> roots_;
@@ -328,9 +377,14 @@ void check_boundary(const ExactField& field) {
 }  // namespace
 
 void BlendOptions::validate() const {
-  if (spacing > 0 && std::isfinite(spacing)) return;
-  throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
-              {.element = "option spacing", .value = fmt::format("{}", spacing)});
+  if (!(spacing > 0 && std::isfinite(spacing))) {
+    throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
+                {.element = "option spacing", .value = fmt::format("{}", spacing)});
+  }
+  if (!(radius >= 0 && std::isfinite(radius))) {
+    throw Error(ErrorCode::bad_usage, "must be a length in mm, or 0 for sharp corners",
+                {.element = "option radius", .value = fmt::format("{}", radius)});
+  }
 }
 
 void leave_one_top(const TriangleMesh& mesh, const std::vector<Index>& root_of_component, std::vector<double>& values) {
@@ -359,7 +413,7 @@ BlendedField blend(const ExactField& field, const BlendOptions& options, const P
     leave_one_top(field.mesh(), result.root_of_component, result.values);
     return result;
   }
-  return LeastBlend(field, options.spacing, progress).run();
+  return LeastBlend(field, options, progress).run();
 }
 
 int levels_to_keep(const TriangleMesh& mesh, std::span<const double> values, double spacing) {

@@ -23,6 +23,9 @@ struct BlendOptions {
   /// Distance that levels are to keep, mm; required, > 0. Where fronts meet at an angle, levels of the least form are
   /// pulled along the axis so far that no point of it is farther than half of this from one of them.
   double spacing = 0;
+  /// What corners of curves along the levels will be rounded with, mm: tips of the least form reach out by what that
+  /// takes off them.
+  double radius = 0;
   void validate() const;  ///< throws Error(bad_usage)
 };
 

@@ -7,6 +7,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/impact/curve_assembly.h"
+#include "isopath/impact/finish_curve.h"
 #include "isopath/impact/gap_repair.h"
 #include "isopath/impact/passes.h"
 #include "isopath/impact/spiral.h"
@@ -23,14 +24,6 @@ constexpr double longest_link_in_spacings = 8;
 /// Where two fronts meet at a right angle, the gap along their ridge is 2 / (1 + sin 45°) = 1.17 spacings; passes this
 /// much closer keep it within `widest_corner_gap`, so that ordinary corners need no detours.
 constexpr double pass_allowance = 0.98;
-
-/// Corners of two-way curves are rounded with this radius, in spacings: a right angle loses 0.03 spacings.
-constexpr double default_radius = 0.08;
-/// Swells of a curve that was rounded with the default may add to the turn of a corner, and so close what its rounding
-/// opened.
-constexpr double swell_radius_over_default = 0.85;
-/// Rounding changes bumps: before it, it is enough that they are there.
-constexpr int rounds_before_rounding = 2;
 
 std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
   std::vector<Vec3> places;
@@ -105,35 +98,15 @@ class Planner {
   }
 
  private:
-  /// Closes gaps and rounds corners: bumps first, which may have corners, and what rounding opens by swells and full
-  /// turns; unless a radius was asked for, what these do not reach by bumps and loops again.
   void finish(ImpactPlan& plan) {
     const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
     GapLimits limits{.spacing = options_.spacing,
                      .widest = as_they_are ? widest_corner_gap : widest_gap,
                      .metric = options_.metric,
                      .radius = options_.min_radius};
-    if (limits.radius == 0 && options_.pattern == Pattern::two_way) limits.radius = default_radius * options_.spacing;
-    if (limits.radius > 0) limits.most_rounds = rounds_before_rounding;
-    progress_.stage("wide gaps");
-    close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
-    if (limits.radius == 0) return;
-    plan.radius = limits.radius;
-    plan.tight = keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_);
-    limits.round = true;
-    limits.most_rounds = GapLimits{}.most_rounds;
-    if (options_.min_radius == 0) limits.radius *= swell_radius_over_default;
-    int changes = close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
-    if (options_.min_radius > 0) {
-      // what was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
-      if (changes > 0) plan.tight = keep_min_radius(linker_, normals_, plan.curve, limits.radius, progress_);
-      return;
-    }
-    // where only a corner or a loop reaches, the gap matters more
-    limits.round = false;
-    limits.radius = 0;
-    changes += close_wide_gaps(linker_, normals_, plan.curve, limits, progress_);
-    if (changes > 0) plan.tight = tight_places(mesh_, plan.curve, plan.radius, progress_);
+    if (limits.radius == 0 && options_.pattern == Pattern::two_way)
+      limits.radius = default_radius_in_spacings * options_.spacing;
+    finish_curve(linker_, normals_, plan, limits, options_.min_radius > 0, progress_);
   }
 
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.

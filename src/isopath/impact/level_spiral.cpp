@@ -9,7 +9,8 @@
 #include "isopath/contour/turn_angle.h"
 #include "isopath/core/error.h"
 #include "isopath/impact/curve_assembly.h"
-#include "isopath/impact/gap_repair.h"
+#include "isopath/impact/finish_curve.h"
+#include "isopath/impact/min_radius.h"
 #include "isopath/impact/two_way.h"
 
 namespace isopath {
@@ -26,10 +27,6 @@ constexpr double last_turn = 0.9;
 /// Where the arms' ends are cut off, as a share of the window.
 constexpr double first_cut = 0.1;
 constexpr double last_cut = 0.9;
-
-/// Levels keep the gap but where windows and the axis' ends meddle; what is wider there gets a bump of the curve. In
-/// spacings.
-constexpr double widest_left = 1.045;
 
 double wrapped(double turn) { return turn - std::round(turn); }
 
@@ -422,8 +419,11 @@ class LevelSpiral {
           fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
     }
     plan.curve = assembly.take();
-    progress_.stage("wide gaps");
-    close_wide_gaps(linker_, normals_, plan.curve, {.spacing = asked, .widest = widest_left}, progress_);
+    const double radius = options_.min_radius > 0 ? options_.min_radius : default_radius_in_spacings * asked;
+    // levels reach out for what rounding takes off them; rounded last, they would have bumps for nothing
+    progress_.stage("corners");
+    keep_min_radius(linker_, normals_, plan.curve, radius, progress_);
+    finish_curve(linker_, normals_, plan, {.spacing = asked, .radius = radius}, options_.min_radius > 0, progress_);
     plan.contours = std::move(contours_);
     return plan;
   }
@@ -568,6 +568,8 @@ void LevelSpiralOptions::validate() const {
     reject("must be a length in mm, or 0 for the default", "option asked_spacing", asked_spacing);
   if (!(clearance >= 0 && std::isfinite(clearance)))
     reject("must be a length in mm, or 0 for the default", "option clearance", clearance);
+  if (!(min_radius >= 0 && std::isfinite(min_radius)))
+    reject("must be a length in mm, or 0 for the default", "option min_radius", min_radius);
 }
 
 ImpactPlan level_spiral(const VertexField& function, const LevelSpiralOptions& options, Progress& progress) {

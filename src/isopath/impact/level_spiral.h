@@ -14,7 +14,9 @@ struct LevelSpiralOptions {
   double spacing = 0;  ///< between levels, mm; required, > 0
   /// The gap to keep, mm, for detours where the levels do not keep it; 0 takes `spacing`.
   double asked_spacing = 0;
-  double clearance = 0;   ///< height of lifts between components, mm; 0 takes the spacing
+  double clearance = 0;  ///< height of lifts between components, mm; 0 takes the spacing
+  /// Smallest radius that the curve may turn with on the surface, mm. 0: corners are rounded with 0.08 spacings.
+  double min_radius = 0;
   void validate() const;  ///< throws Error(bad_usage)
 };
 

@@ -7,6 +7,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/impact/finish_curve.h"
 
 namespace isopath {
 namespace {
@@ -54,7 +55,8 @@ NestedField nested_field(const Job& job, const ExactField& distance, double spac
       throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
                   {.advice = "take the pattern two-way, which needs none, or part it first"});
     }
-    BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing}, progress);
+    const double radius = job.min_radius > 0 ? job.min_radius : default_radius_in_spacings * spacing;
+    BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing, .radius = radius}, progress);
     return {std::move(blended.values), blended.spacing};
   }
   NestedField nested{{distance.vertex_distances().begin(), distance.vertex_distances().end()}, spacing};

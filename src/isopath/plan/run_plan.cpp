@@ -213,7 +213,8 @@ ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& p
                       {.arms = result.pattern == Pattern::double_spiral ? 2 : 1,
                        .spacing = field.spacing,
                        .asked_spacing = result.spacing,
-                       .clearance = result.job.clearance},
+                       .clearance = result.job.clearance,
+                       .min_radius = result.job.min_radius},
                       progress);
 }
 

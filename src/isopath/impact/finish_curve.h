@@ -1,0 +1,21 @@
+#pragma once
+
+#include "isopath/core/progress.h"
+#include "isopath/impact/gap_repair.h"
+#include "isopath/impact/impact_plan.h"
+#include "isopath/impact/surface_curve.h"
+#include "isopath/mesh/normals.h"
+
+namespace isopath {
+
+/// Corners of curves that are to have none are rounded with this radius, in spacings: a right angle loses 0.03
+/// spacings.
+inline constexpr double default_radius_in_spacings = 0.08;
+
+/// Closes a plan's gaps and rounds its corners with `limits.radius`: bumps first, which may have corners, and what
+/// rounding opens by swells and full turns; unless a radius was asked for (`radius_first`), what these do not reach by
+/// bumps and loops again. Corners stay where the radius is 0. Sets the plan's radius and its tight places.
+void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
+                  bool radius_first, Progress& progress = Progress::none());
+
+}  // namespace isopath
