@@ -214,6 +214,7 @@ struct Malformed {
   std::string element;
   const char* summary;
 };
+void PrintTo(const Malformed& malformed, std::ostream* out) { *out << malformed.name; }
 
 class MalformedInput : public testing::TestWithParam<Malformed> {};
 

@@ -47,7 +47,13 @@ TEST(SourceSpec, EveryFormReadsBackToItself) {
   }
 }
 
-class BadSourceSpec : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+struct BadSpec {
+  const char* text;
+  const char* value;
+};
+void PrintTo(const BadSpec& spec, std::ostream* out) { *out << '\'' << spec.text << '\''; }
+
+class BadSourceSpec : public testing::TestWithParam<BadSpec> {};
 
 TEST_P(BadSourceSpec, IsRefusedWithItsTextAndItsValue) {
   const auto [text, value] = GetParam();
@@ -63,18 +69,17 @@ TEST_P(BadSourceSpec, IsRefusedWithItsTextAndItsValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     Forms, BadSourceSpec,
-    testing::Values(std::pair("", "''"), std::pair("border", "'border'"), std::pair("vertex", "nothing after"),
-                    std::pair("vertex:", "nothing after"), std::pair("vertex:1,x", "'x'"),
-                    std::pair("vertex:-1", "'-1'"), std::pair("vertex:1.5", "'1.5'"),
-                    std::pair("vertex:99999999999", "'99999999999'"), std::pair("boundary:", "nothing after"),
-                    std::pair("point:1,2", "2 where 3"), std::pair("point:1,2,nan", "'nan'"),
-                    std::pair("point:1,2,1e999", "'1e999'"), std::pair("plane:0,0,0,1", "0,0,0"),
-                    std::pair("edges:180", "180"), std::pair("edges:0", "0"), std::pair("auto:1", "1"),
-                    std::pair("geodesic:1,2,3", "1 where 2"), std::pair("geodesic:1,2,3:4,5", "2 where 3"),
-                    std::pair("cut:1,2:3", "2 where a point"), std::pair("cut:1:2,3,4", "3 where 1 to 2"),
-                    std::pair("segment:x:0,1", "'x'"), std::pair("segment:0:0.5,0.5", "0.5"),
-                    std::pair("offset:30,0", "0"), std::pair("offset:200,1", "200"),
-                    std::pair("offset:30", "1 where 2")));
+    testing::Values(BadSpec{"", "''"}, BadSpec{"border", "'border'"}, BadSpec{"vertex", "nothing after"},
+                    BadSpec{"vertex:", "nothing after"}, BadSpec{"vertex:1,x", "'x'"}, BadSpec{"vertex:-1", "'-1'"},
+                    BadSpec{"vertex:1.5", "'1.5'"}, BadSpec{"vertex:99999999999", "'99999999999'"},
+                    BadSpec{"boundary:", "nothing after"}, BadSpec{"point:1,2", "2 where 3"},
+                    BadSpec{"point:1,2,nan", "'nan'"}, BadSpec{"point:1,2,1e999", "'1e999'"},
+                    BadSpec{"plane:0,0,0,1", "0,0,0"}, BadSpec{"edges:180", "180"}, BadSpec{"edges:0", "0"},
+                    BadSpec{"auto:1", "1"}, BadSpec{"geodesic:1,2,3", "1 where 2"},
+                    BadSpec{"geodesic:1,2,3:4,5", "2 where 3"}, BadSpec{"cut:1,2:3", "2 where a point"},
+                    BadSpec{"cut:1:2,3,4", "3 where 1 to 2"}, BadSpec{"segment:x:0,1", "'x'"},
+                    BadSpec{"segment:0:0.5,0.5", "0.5"}, BadSpec{"offset:30,0", "0"}, BadSpec{"offset:200,1", "200"},
+                    BadSpec{"offset:30", "1 where 2"}));
 
 }  // namespace
 }  // namespace isopath
