@@ -320,7 +320,7 @@ WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std
   return gathered;
 }
 
-void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Workshop& workshop) {
+void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, bool several, Workshop& workshop) {
   const Site& site = sites_[h];
   const bool leaves_surface = site.twin == no_index;  // see waiting_place
   const Index next = TriangleMesh::next(h);
@@ -329,7 +329,7 @@ void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, Works
   n = trim_by_vertices(windows, n, site.length, distances_[tail], distances_[head], margin_);
   double* begin = workshop.sides[0].data();
   double* end = workshop.sides[1].data();
-  if (trim_by_neighbours(windows, n, margin_, begin, end)) {
+  if (several && trim_by_neighbours(windows, n, margin_, begin, end)) {
     std::copy_n(begin, n, windows.begin);
     std::copy_n(end, n, windows.end);
     n = drop_empty(windows, n);
@@ -368,7 +368,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   const Site& right = sites_[next];
   const StepGeometry triangle{site.length, site.apex, sites_[previous].length, right.length,
                               axis_to_head(site.length, site.apex, right.length, right.apex)};
-  trim(windows, n, h, workshop);
+  trim(windows, n, h, owner == nullptr, workshop);
   if (retain_ && n > 0) {
     KeptList* list = workshop.keep(windows, n);
     list->next = std::exchange(kept_[h], list);

@@ -173,8 +173,9 @@ class ListPropagation {
   /// The lower envelope of a list, with neighbours merged as the limits allow: in place, or in a scratch where it has
   /// more windows. Windows that are longer by less than the accuracy are not cut otherwise.
   WindowArrays merged(const WindowArrays& windows, std::size_t& n, double length, Workshop& workshop) const;
-  /// Drops and cuts windows that are beaten by known distances and by each other.
-  void trim(WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
+  /// Drops and cuts windows that are beaten by known distances, and by each other where `several` lists met: one that
+  /// comes alone was trimmed in the triangles before, and has little left to lose.
+  void trim(WindowArrays& windows, std::size_t& n, Index halfedge, bool several, Workshop& workshop);
   /// What a list still adds to all that crossed the same half-edge before.
   WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
   void commit(const Crossing& crossing);
