@@ -1,5 +1,9 @@
 #include "isopath/impact/finish_curve.h"
 
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 #include "isopath/impact/min_radius.h"
 
 namespace isopath {
@@ -11,20 +15,43 @@ constexpr double swell_radius_over_default = 0.85;
 /// Rounding changes bumps: before it, it is enough that they are there.
 constexpr int rounds_before_rounding = 2;
 
+bool before(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+std::vector<Vec3> sorted_positions(const ImpactCurve& curve) {
+  std::vector<Vec3> positions;
+  for (const ImpactPoint& point : curve.points) positions.push_back(point.position);
+  std::sort(positions.begin(), positions.end(), before);
+  return positions;
+}
+
+/// Rounds the curve and adds the points that this has moved, where they were and where they are.
+std::vector<TightPlace> round_corners(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                                      double radius, std::vector<Vec3>& moved, const Progress& progress) {
+  const std::vector<Vec3> old_positions = sorted_positions(curve);
+  std::vector<TightPlace> tight = keep_min_radius(linker, normals, curve, radius, progress);
+  const std::vector<Vec3> positions = sorted_positions(curve);
+  std::set_symmetric_difference(old_positions.begin(), old_positions.end(), positions.begin(), positions.end(),
+                                std::back_inserter(moved), before);
+  return tight;
+}
+
 }  // namespace
 
 void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
                   bool radius_first, Progress& progress) {
   if (limits.radius > 0) limits.most_rounds = rounds_before_rounding;
   progress.stage("wide gaps");
-  close_wide_gaps(linker, normals, plan.curve, limits, progress);
+  ClosedGaps closed = close_gaps_everywhere(linker, normals, plan.curve, limits, progress);
   if (limits.radius == 0) return;
   plan.radius = limits.radius;
-  plan.tight = keep_min_radius(linker, normals, plan.curve, limits.radius, progress);
+  plan.tight = round_corners(linker, normals, plan.curve, limits.radius, closed.unsettled, progress);
   limits.round = true;
   limits.most_rounds = GapLimits{}.most_rounds;
   if (!radius_first) limits.radius *= swell_radius_over_default;
-  int changes = close_wide_gaps(linker, normals, plan.curve, limits, progress);
+  closed = close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress);
+  int changes = closed.count;
   if (radius_first) {
     // what was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
     if (changes > 0) plan.tight = keep_min_radius(linker, normals, plan.curve, limits.radius, progress);
@@ -33,7 +60,7 @@ void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, Imp
   // where only a corner or a loop reaches, the gap matters more
   limits.round = false;
   limits.radius = 0;
-  changes += close_wide_gaps(linker, normals, plan.curve, limits, progress);
+  changes += close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress).count;
   if (changes > 0) plan.tight = tight_places(linker.mesh(), plan.curve, plan.radius, progress);
 }
 

@@ -79,17 +79,26 @@ class GapCloser {
     may_look_at_parts_ = !limits.metric && longest <= limits.spacing;
   }
 
-  int run() {
-    int count = 0;
-    std::vector<Replacement> changes;
-    bool loops = true;
+  /// Looks beside some places first, or everywhere.
+  ClosedGaps run(const std::vector<Vec3>* beside) {
+    ClosedGaps closed;
+    if (beside) closed.unsettled = *beside;
     for (int round = 0; round < limits_.most_rounds; ++round) {
-      const auto [cover, spots] = loops ? look_everywhere() : look_beside(changes);
-      changes = bumps_and_loops(cover, spots, round, loops);
+      const bool everywhere = round == 0 && !beside;
+      if (!everywhere && closed.unsettled.empty()) break;
+      const auto [cover, spots] = everywhere ? look_everywhere() : look_beside(closed.unsettled);
+      const std::vector<Replacement> changes = bumps_and_loops(cover, spots, round);
+      closed.unsettled.clear();
+      for (const OpenSpot& spot : spots) {
+        for (const SpotCell& cell : spot.cells) closed.unsettled.push_back(cell.position);
+      }
       if (changes.empty()) break;
-      count += replace(mesh_, curve_, changes);
+      for (const Replacement& change : changes) {
+        for (const ImpactPoint& point : change.points) closed.unsettled.push_back(point.position);
+      }
+      closed.count += replace(mesh_, curve_, changes);
     }
-    return count;
+    return closed;
   }
 
  private:
@@ -104,13 +113,9 @@ class GapCloser {
     return {std::move(cover), std::move(spots)};
   }
 
-  /// Bumps change gaps only beside them, and what lies two spacings away has no part in those.
-  View look_beside(const std::vector<Replacement>& changes) {
+  /// Bumps and loops change gaps only beside them, and what lies two spacings away has no part in those.
+  View look_beside(const std::vector<Vec3>& places) {
     const double w = limits_.spacing;
-    std::vector<Vec3> places;
-    for (const Replacement& change : changes) {
-      for (const ImpactPoint& point : change.points) places.push_back(point.position);
-    }
     const NearPlaces changed(places, 2.5 * w);
     QuietProgress quiet(progress_);
     CoverField cover = [&] {
@@ -137,8 +142,7 @@ class GapCloser {
     return turn_into(linker_, normals_, curve_, cover, spot, limits);
   }
 
-  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, int round,
-                                           bool& loops) {
+  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, int round) {
     const double w = limits_.spacing;
     std::vector<Replacement> replacements;
     std::vector<char> wide(mesh_.n_faces(), 0);
@@ -151,7 +155,6 @@ class GapCloser {
       farthest = std::max(farthest, spot.cells.front().distance);
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }
-    loops = farthest > 0;
     for (const Contour& contour : loops_in(mesh_, cover.field, w, std::move(wide), farthest, progress_)) {
       progress_.checkpoint();
       replacements.push_back(detour_along(contour, linker_, normals_, curve_, cover));
@@ -226,7 +229,17 @@ int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacemen
 
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                     const GapLimits& limits, Progress& progress) {
-  return GapCloser(linker, normals, curve, limits, progress).run();
+  return GapCloser(linker, normals, curve, limits, progress).run(nullptr).count;
+}
+
+ClosedGaps close_gaps_everywhere(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                                 const GapLimits& limits, Progress& progress) {
+  return GapCloser(linker, normals, curve, limits, progress).run(nullptr);
+}
+
+ClosedGaps close_gaps_beside(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                             const std::vector<Vec3>& places, const GapLimits& limits, Progress& progress) {
+  return GapCloser(linker, normals, curve, limits, progress).run(&places);
 }
 
 }  // namespace isopath

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "isopath/contour/isolines.h"
+#include "isopath/core/geometry.h"
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/impact/bump.h"
@@ -35,6 +36,19 @@ struct GapLimits {
 /// in the next round. Returns the number of bumps and loops.
 int close_wide_gaps(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                     const GapLimits& limits, Progress& progress = Progress::none());
+
+/// What was closed, and where to look next.
+struct ClosedGaps {
+  int count = 0;
+  std::vector<Vec3> unsettled;  ///< where the curve has changed since gaps were looked for, and gaps that stayed open
+};
+/// The same, looking only beside some places, where the curve has changed.
+ClosedGaps close_gaps_beside(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                             const std::vector<Vec3>& places, const GapLimits& limits,
+                             Progress& progress = Progress::none());
+/// The same as `close_wide_gaps`, for a caller who will look again.
+ClosedGaps close_gaps_everywhere(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
+                                 const GapLimits& limits, Progress& progress = Progress::none());
 
 /// A way out of the curve to a contour, along it, and back: round a closed one, along an open one as a link. Its first
 /// point should be the one nearest to the curve.
