@@ -1,17 +1,17 @@
 // The exact field on meshes that are hard on it: near-degenerate ones of every kind against exhaustive unfolding,
 // properties that need no judge, and the two failures that other programs are known for (docs/robustness.md).
 //
-// ISOPATH_HARD_MESHES=100000 in the environment makes the comparison a long one; ISOPATH_HARD_SEED=n starts it at
-// another seed, so that ISOPATH_HARD_SEED=17343 ISOPATH_HARD_MESHES=1 repeats a failure.
+// ISOPATH_HARD_MESHES=100000 in the environment makes the comparison a long one (a few minutes); ISOPATH_HARD_SEED=n
+// starts it at another seed, so that ISOPATH_HARD_SEED=17343 ISOPATH_HARD_MESHES=1 repeats a failure.
 
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <numbers>
 #include <optional>
@@ -69,13 +69,14 @@ std::optional<std::string> wrong(const TriangleMesh& mesh, double found, double 
                      expected, (found - expected) / expected, (found - expected) / mesh.size());
 }
 
-/// Stops a computation that does not end: these meshes take a few milliseconds.
+/// Stops a computation that does not end: these meshes take a few milliseconds. Counts processor time, so that a busy
+/// machine stops nothing.
 class Deadline final : public Progress {
  public:
-  bool cancelled() const override { return std::chrono::steady_clock::now() > end_; }
+  bool cancelled() const override { return std::clock() > end_; }
 
  private:
-  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  std::clock_t end_ = std::clock() + 5 * CLOCKS_PER_SEC;
 };
 
 std::optional<std::string> find_fault(Rng& rng, const TriangleMesh& mesh) {
@@ -95,23 +96,28 @@ std::optional<std::string> find_fault(Rng& rng, const TriangleMesh& mesh) {
   return std::nullopt;
 }
 
+/// True when there is nothing to report.
+bool expect_agreement_on_hard_mesh(std::uint64_t seed, const HardMeshOptions& options) {
+  Rng rng(seed);
+  const HardMesh hard = hard_mesh(rng, options);
+  std::optional<std::string> fault;
+  try {
+    fault = find_fault(rng, hard.mesh);
+  } catch (const std::exception& error) {
+    fault = error.what();
+  }
+  if (fault)
+    ADD_FAILURE() << "seed " << seed << " (" << hard.kind << ", " << hard.mesh.n_faces() << " faces): " << *fault;
+  return !fault;
+}
+
 void expect_agreement_on_hard_meshes(const HardMeshOptions& options, std::uint64_t few) {
   const std::uint64_t first = number_from_environment("ISOPATH_HARD_SEED", 0);
   const std::uint64_t count = number_from_environment("ISOPATH_HARD_MESHES", few);
   constexpr int most_reports = 500;
   int faults = 0;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    Rng rng(seed);
-    const HardMesh hard = hard_mesh(rng, options);
-    std::optional<std::string> fault;
-    try {
-      fault = find_fault(rng, hard.mesh);
-    } catch (const std::exception& error) {
-      fault = error.what();
-    }
-    if (!fault) continue;
-    ADD_FAILURE() << "seed " << seed << " (" << hard.kind << ", " << hard.mesh.n_faces() << " faces): " << *fault;
-    if (++faults == most_reports) break;
+  for (std::uint64_t seed = first; seed < first + count && faults < most_reports; ++seed) {
+    if (!expect_agreement_on_hard_mesh(seed, options)) ++faults;
   }
 }
 
@@ -119,6 +125,17 @@ TEST(ExactFieldRobustness, HardMeshesAgreeWithExhaustiveUnfolding) { expect_agre
 
 // Corners exactly on the opposite edge, vertices that coincide or nearly so.
 TEST(ExactFieldRobustness, HardestMeshesAgreeWithExhaustiveUnfolding) { expect_agreement_on_hard_meshes({}, 4000); }
+
+// One in some thousand: each of these once found a fault, in the field or in its judge (docs/robustness.md).
+TEST(ExactFieldRobustness, RareFaultsStayMended) {
+  for (const std::uint64_t seed :
+       {23158,  24659,  25668,  26185,  31259,  39213,  44373,  45056,  48690,  53442,  54664,  54896,  59173,
+        60454,  66277,  74384,  83548,  84802,  84836,  88071,  91444,  93529,  95596,  96583,  98330,  100546,
+        104709, 110412, 110737, 111400, 116951, 124388, 126093, 130295, 131362, 131478, 136685, 150882, 150942,
+        154655, 155668, 157653, 158387, 162613, 167332, 174516, 178676, 185957, 187144, 194281, 198440, 199685}) {
+    expect_agreement_on_hard_mesh(seed, {});
+  }
+}
 
 TEST(ExactFieldRobustness, StopsWhileSourcesAreLaidOut) {
   // Many points in one face: all the work is laying them out, before the first round.

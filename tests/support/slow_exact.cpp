@@ -115,6 +115,10 @@ void SlowExact::find_bending_vertices() {
   for (Index v = 0; v < mesh_.n_vertices(); ++v) {
     bends_[v] = mesh_.is_boundary_vertex(v) || angle[v] > 2 * std::numbers::pi_v<Real> - 1e-6;
   }
+  // Rays from a vertex in the same place have no direction to come from.
+  for (Index h = 0; h < mesh_.n_halfedges(); ++h) {
+    if (length_of(h) == 0) bends_[mesh_.from(h)] = bends_[mesh_.to(h)] = true;
+  }
 }
 
 void SlowExact::add_point(const SurfacePoint& point) {
@@ -244,6 +248,11 @@ void SlowExact::follow(const Beam& beam) {
     Beam child = beam;
     child.low = side == 0 ? meeting(high) : (split < high ? 0 : meeting(high));
     child.high = side == 1 ? meeting(low) : (split > low ? 1 : meeting(low));
+    // All on one line: the half-turn from a corner on the edge (see leave) goes on as one.
+    if (corners[2].y() == 0 && beam.from.y() == 0 && !beam.is_parallel()) {
+      child.low = 0;
+      child.high = 1;
+    }
     const Vec& axis = sides_[h][side];
     const Vec offset = beam.from - start;
     child.from = {axis.dot(offset), cross(axis, offset)};

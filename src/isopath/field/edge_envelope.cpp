@@ -29,6 +29,20 @@ bool beats(const Window& window, const Window& old, double x) {
   return mine < theirs - (window.filler ? margin : -margin);
 }
 
+/// True when `window` is to replace `old` all the way between two ties. Far from both sources they may seem equally far
+/// where next to them they are not.
+bool beats_between(const Window& window, const Window& old, double low, double high) {
+  const double middle = 0.5 * (low + high);
+  const double nothing = tie_rounding * old.distance(middle);
+  const auto lead = [&](double x) { return old.distance(x) - window.distance(x); };
+  double most = lead(middle);
+  if (std::abs(most) > nothing) return most > 0;
+  for (const double x : {low, high}) {
+    if (const double here = lead(x); std::abs(here) > std::abs(most)) most = here;
+  }
+  return most > nothing;
+}
+
 }  // namespace
 
 void EdgeEnvelope::reset(double length, double snap) {
@@ -72,7 +86,7 @@ void EdgeEnvelope::divide_overlap(Index old_id, const Window& window, double low
     if (window.filler || old.filler) {
       divide_by_margin(old_id, window, from, to);
     } else {
-      append(from, to, beats(window, old, 0.5 * (from + to)) ? newcomer : old_id);
+      append(from, to, beats_between(window, old, from, to) ? newcomer : old_id);
     }
     from = to;
   }

@@ -42,6 +42,8 @@ class IntrinsicGeometry {
   double max_stretch() const { return max_stretch_; }
   /// The model's size as tolerances need it: no shorter than any straight way.
   double size() const { return size_; }
+  /// Coordinates are turned from frame to frame, distances are sums of a few square roots: both are good to this.
+  double rounding() const { return 1e-14 * size_; }
 
  private:
   bool is_metric_ = false;

@@ -13,9 +13,8 @@
 namespace isopath {
 namespace {
 
-/// Distances are sums of a few square roots, coordinates are turned from frame to frame; a difference below this part
-/// of the model's size decides nothing.
-constexpr double rounding_of_size = 1e-14;
+/// Directions that are known less well than this leave slits beside the vertices that rays pass, wide enough to matter.
+constexpr double widest_slit = 1e-9;
 /// Rises less than any direction is known to.
 constexpr double least_slope = 1e-20;
 /// So few items are not worth waking another thread for.
@@ -69,7 +68,7 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
       workshops_(retain),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
-      rounding_(rounding_of_size * geometry.size()) {
+      rounding_(geometry.rounding()) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     Site& site = sites_[h];
     site.length = geometry.length(h);
@@ -198,7 +197,8 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
     const double there = distance + spoke.length;
     if (!(there < distances_[spoke.to])) continue;
     __builtin_prefetch(&states_[spoke.to], 1);
-    Arrival arrival{no_index, 0, from.arrival.error, Vec2::UnitX()};
+    const float slack = slack_at(spoke.length);
+    Arrival arrival{no_index, slack > widest_slit ? slack : 0, from.arrival.error, Vec2::UnitX()};
     if (k == 0 && !is_closed(ring)) {
       arrival.halfedge = TriangleMesh::next(spoke.halfedge);
       arrival.back = geometry_.apex(arrival.halfedge);
@@ -209,10 +209,17 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
   }
 }
 
+bool ListPropagation::may_bend(Index vertex) const {
+  const VertexState& state = states_[vertex];
+  if (state.may_bend || state.arrival.slack <= widest_slit) return state.may_bend;
+  const double sides = is_closed(rings_.of(vertex)) ? 2 : 1;
+  return state.total_angle > sides * (std::numbers::pi - state.arrival.slack);
+}
+
 void ListPropagation::find_fans(Index vertex, Handed& handed) {
   const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
-  if (!is_source && !states_[vertex].may_bend) return;
+  if (!is_source && !may_bend(vertex)) return;
   const std::span<const Spoke> ring = rings_.of(vertex);
   std::size_t first = 0;
   BlockedArc behind;
@@ -293,6 +300,7 @@ WindowArrays ListPropagation::gather(Crossing& crossing, Workshop& workshop, std
     for (WindowBlock* block = first; block != nullptr; block = block->next) {
       blocks.push_back(block);
       n += static_cast<std::size_t>(block->size);
+      crossing.depth = std::min(crossing.depth, block->depth);
     }
   }
   owner = blocks.size() == 1 ? blocks.front() : nullptr;
@@ -360,14 +368,19 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   WindowBlock* owner = nullptr;
   WindowArrays windows = gather(crossing, workshop, n, owner);
   workshop.make_sides(n);
+  if (crossing.depth > mesh_.n_faces()) n = 0;  // a shortest way comes into a face but once
 
   const Index next = TriangleMesh::next(h);
   const Index previous = TriangleMesh::prev(h);
   const Site& site = sites_[h];
   for (const Index leaving : {previous, next}) __builtin_prefetch(&sites_[std::max(sites_[leaving].twin, 0)], 1);
   const Site& right = sites_[next];
-  const StepGeometry triangle{site.length, site.apex, sites_[previous].length, right.length,
-                              axis_to_head(site.length, site.apex, right.length, right.apex)};
+  const StepGeometry triangle{site.length,
+                              site.apex,
+                              sites_[previous].length,
+                              right.length,
+                              axis_to_head(site.length, site.apex, right.length, right.apex),
+                              rounding_};
   trim(windows, n, h, owner == nullptr, workshop);
   if (retain_ && n > 0) {
     KeptList* list = workshop.keep(windows, n);
@@ -397,6 +410,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
       block->size = static_cast<Index>(cross_to(windows, n, triangle, apex, side_of_begin, side_of_end,
                                                 workshop.blocks.arrays(block), block->least));
       if (block->size == 0) return workshop.blocks.give_back(block);
+      block->depth = crossing.depth + 1;
       reached = entering;
       least = block->least;
       put_down(entering, feeder, block);

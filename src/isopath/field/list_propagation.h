@@ -115,7 +115,8 @@ class ListPropagation {
   /// One list on its way through a triangle, and what it found there.
   struct Crossing {
     Index halfedge = no_index;
-    Index left = no_index;  ///< half-edge that got children, if any
+    Index depth = std::numeric_limits<Index>::max();  ///< see WindowBlock
+    Index left = no_index;                            ///< half-edge that got children, if any
     Index right = no_index;
     Index n_windows = 0;
     double left_least = infinity;
@@ -157,6 +158,9 @@ class ListPropagation {
   /// Angle by which the direction to a point of the plane, at this distance, may be off.
   float slack_at(double distance) const { return static_cast<float>(std::min(rounding_ / distance, full_turn)); }
 
+  /// True where shortest ways may bend at a vertex; or where nobody can tell, since rounding turns the rays that come
+  /// from so near: it then sends a fan into the slit between those that pass left and right of it.
+  bool may_bend(Index vertex) const;
   void relax_edges(Index vertex, Handed& handed) const;
   void find_fans(Index vertex, Handed& handed);
   void send_fan(const Fan& fan, Workshop& workshop, Handed& handed);

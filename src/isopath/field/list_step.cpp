@@ -169,23 +169,26 @@ std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double 
     V end = w.end;
     const M present_and_cut = hn::AndNot(lost, hn::And(present, hn::Or(by_tail, by_head)));
     if (!hn::AllFalse(d, present_and_cut)) {
+      // How far each tie is from its vertex. Of a source next to the vertex that is known only when measured from
+      // there.
+      const V far = all(length);
+      const V beyond = hn::Sub(far, w.x);
       const V from_tail = hn::Sub(tail, w.offset);
-      const V from_head = hn::Sub(head, w.offset);
-      const V squared = hn::Add(square(w.x), square(w.y));
-      V tail_up = hn::Sub(squared, square(from_tail));
+      const V from_head = hn::Sub(all(at_head), w.offset);
+      V tail_up = hn::Add(hn::Mul(hn::Sub(w.x, from_tail), hn::Add(w.x, from_tail)), square(w.y));
       V tail_down = hn::Mul(two, hn::Add(from_tail, w.x));
-      V head_up = hn::Sub(square(from_head), squared);
-      V head_down = hn::Mul(two, hn::Sub(from_head, w.x));
+      V head_up = hn::Add(hn::Mul(hn::Sub(beyond, from_head), hn::Add(beyond, from_head)), square(w.y));
+      V head_down = hn::Mul(two, hn::Add(from_head, beyond));
       if (w.any_line) {
         tail_up = hn::IfThenElse(w.line, hn::Neg(from_tail), tail_up);
         tail_down = hn::IfThenElse(w.line, hn::Sub(one, w.x), tail_down);
-        head_up = hn::IfThenElse(w.line, from_head, head_up);
+        head_up = hn::IfThenElse(w.line, hn::Sub(hn::Mul(w.x, far), from_head), head_up);
         head_down = hn::IfThenElse(w.line, hn::Add(one, w.x), head_down);
       }
       const M cut_tail = hn::And(by_tail, hn::Gt(tail_down, zero()));
       const M cut_head = hn::And(by_head, hn::Gt(head_down, zero()));
       const V tie_tail = hn::Div(tail_up, hn::IfThenElse(cut_tail, tail_down, one));
-      const V tie_head = hn::Div(head_up, hn::IfThenElse(cut_head, head_down, one));
+      const V tie_head = hn::Sub(far, hn::Div(head_up, hn::IfThenElse(cut_head, head_down, one)));
       begin = hn::IfThenElse(cut_tail, hn::Max(begin, hn::Min(tie_tail, end)), begin);
       end = hn::IfThenElse(cut_head, hn::Min(w.end, hn::Max(tie_head, w.begin)), end);
     }
@@ -371,7 +374,7 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
 
 /// The frame behind one of the two edges that windows leave by: its origin and the direction of its x axis.
 struct Frame {
-  V x, y, cos, sin;
+  V x, y, cos, sin, rounding;
   V along(V px, V py) const { return hn::Add(hn::Mul(px, cos), hn::Mul(py, sin)); }
   V across(V px, V py) const { return hn::Sub(hn::Mul(py, cos), hn::Mul(px, sin)); }
 };
@@ -392,10 +395,13 @@ std::size_t store_children(const Windows& w, M keep, const Frame& frame, V low, 
                            const WindowArrays& to, V& least) {
   const V from_x = hn::Sub(w.x, frame.x);
   const V from_y = hn::Sub(w.y, frame.y);
+  const V ahead = frame.across(from_x, from_y);
   V x = frame.along(from_x, from_y);
-  V y = hn::Min(frame.across(from_x, from_y), zero());
+  V y = hn::Min(ahead, zero());
   V offset = w.offset;
   keep = hn::And(keep, hn::Lt(low, high));
+  // Of a source ahead of the edge no ray goes through it, whatever tiny edges make of its beam.
+  keep = hn::AndNot(hn::AndNot(w.line, hn::Gt(ahead, frame.rounding)), keep);
   const V beside = hn::Max(hn::Max(hn::Sub(low, x), hn::Sub(x, high)), zero());
   V nearest = hn::Add(offset, hn::Sqrt(hn::Add(square(beside), square(y))));
   if (w.any_line) {
@@ -417,7 +423,8 @@ std::size_t cross_to_left(const WindowArrays& windows, std::size_t n, const Step
                           const ApexReach& apex, const double* side_of_begin, const double* side_of_end,
                           const WindowArrays& children, double& least) {
   const double length = triangle.left_length;
-  const Frame frame{zero(), zero(), all(triangle.apex.x() / length), all(triangle.apex.y() / length)};
+  const Frame frame{zero(), zero(), all(triangle.apex.x() / length), all(triangle.apex.y() / length),
+                    all(triangle.rounding)};
   const V apex_x = all(triangle.apex.x());
   const V apex_y = all(triangle.apex.y());
   const V far = all(length);
@@ -452,7 +459,7 @@ std::size_t cross_to_right(const WindowArrays& windows, std::size_t n, const Ste
   const double length = triangle.right_length;
   const V apex_x = all(triangle.apex.x());
   const V apex_y = all(triangle.apex.y());
-  const Frame frame{apex_x, apex_y, all(triangle.right_axis.x()), all(triangle.right_axis.y())};
+  const Frame frame{apex_x, apex_y, all(triangle.right_axis.x()), all(triangle.right_axis.y()), all(triangle.rounding)};
   const V far = all(length);
   const V head = all(triangle.length);
   const V direct_x = all(apex.direct_x);

@@ -17,6 +17,7 @@ struct StepGeometry {
   double left_length = 0;           ///< from the tail to the apex
   double right_length = 0;          ///< from the apex to the head
   Vec2 right_axis = Vec2::UnitX();  ///< from the apex to the head, a unit vector
+  double rounding = 0;              ///< of coordinates
 };
 
 /// Cuts off what is farther than along the edge from one of its two vertices, where the distances are at most `at_tail`

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "isopath/field/edge_envelope.h"
 #include "isopath/field/list_propagation.h"
@@ -69,6 +70,13 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
   });
   envelope.reset(length, snap_width(length));
   for (const Window& window : all) envelope.insert(window);
+  // A source on the edge sends half a turn of rays through one point. On the edge, others may be as near on both sides.
+  for (Window& window : all) {
+    if (window.kind == Window::Kind::line || std::abs(window.source.y()) > snap_width(length)) continue;
+    window.begin = std::max(window.begin, window.source.x() - 0.25 * snap_width(length));
+    window.end = std::min(window.end, window.source.x() + 0.25 * snap_width(length));
+    envelope.insert(window);
+  }
 
   const auto by_edge = [](const auto& source, Index e) { return source.first < e; };
   for (auto s = std::lower_bound(edge_sources_.begin(), edge_sources_.end(), edge, by_edge);
@@ -77,8 +85,7 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
   }
   const auto follow_from = [&](Index vertex, double x) {
     if (distances_[vertex] == infinity) return;
-    envelope.insert(
-        along_edge(x, length, distances_[vertex], states_[vertex].arrival.error, states_[vertex].root));
+    envelope.insert(along_edge(x, length, distances_[vertex], states_[vertex].arrival.error, states_[vertex].root));
   };
   if (envelope.is_continuous(distances_[mesh_.from(canonical)], distances_[mesh_.to(canonical)])) {
     envelope.merge(limits_);

@@ -11,8 +11,6 @@ namespace isopath {
 namespace {
 
 constexpr double half_pi = std::numbers::pi / 2;
-/// Coordinates of a point in a frame are good to this part of the model's size.
-constexpr double rounding_of_size = 1e-14;
 /// Between two looks at whether to go on.
 constexpr Index elements_at_a_time = 1024;
 
@@ -194,9 +192,8 @@ void FrontBuilder::start_point_in_face(std::span<const SourceElement> elements, 
       clip(segment.dot(window.source), -segment.x(), window.begin, window.end);
     }
     // Beside the edge many directions pass within a rounding error.
-    const double rounding = rounding_of_size * geometry_.size();
-    window.begin = std::max(window.begin - rounding, 0.0);
-    window.end = std::min(window.end + rounding, geometry_.length(h));
+    window.begin = std::max(window.begin - geometry_.rounding(), 0.0);
+    window.end = std::min(window.end + geometry_.rounding(), geometry_.length(h));
     if (window.begin < window.end) insert_leaving(h, window);
   }
 }

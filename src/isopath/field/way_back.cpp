@@ -108,10 +108,11 @@ bool lies_flat(const IntrinsicGeometry& geometry, Index face) {
   return geometry.apex(h).y() * geometry.length(h) <= flattest * longest * longest;
 }
 
-/// True when a front that leaves the face of p by this window passes p before it does.
-bool passes_before(const Window& w, const Vec2& p) {
+/// True when a front that leaves the face of p by this window passes p before it does. The face lies above the edge, or
+/// below it.
+bool passes_before(const Window& w, const Vec2& p, bool above) {
   if (w.kind == Window::Kind::line) return w.offset + w.source.dot(p) >= 0;
-  return p.y() >= 0 ? w.source.y() >= p.y() : w.source.y() <= p.y();
+  return above ? w.source.y() >= p.y() : w.source.y() <= p.y();
 }
 
 void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric, Fronts fronts, WayBack& best) {
@@ -120,6 +121,7 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
   const bool canonical = data.mesh.halfedge_of(edge) == h;
   Vec2 p = data.geometry.in_frame(h, barycentric);
   const bool by_any = fronts == Fronts::all || (fronts == Fronts::all_on_edges && p.y() <= flattest * length);
+  if (by_any && p.y() <= data.geometry.rounding()) p.y() = 0;  // so is a source that is as near
   if (!canonical) p = Vec2(length - p.x(), -p.y());
   Crossing crossing;
   crossing.distance = best.distance;
@@ -130,7 +132,7 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
   if (squared_width < 0) return;
   const double width = std::sqrt(squared_width);
   data.for_each_window(edge, p.x() - width, p.x() + width, [&](const Window& w) {
-    if (w.halfedge != h && !(by_any && passes_before(w, p))) return;
+    if (w.halfedge != h && !(by_any && passes_before(w, p, canonical))) return;
     if (!improve(w, p, widest_miss * length, crossing)) return;
     found = true;
     root = w.root;

@@ -110,6 +110,7 @@ WindowBlock* WindowBlocks::take(std::size_t size) {
   if (!free_[size_class].empty()) {
     WindowBlock* block = free_[size_class].back();
     free_[size_class].pop_back();
+    block->depth = 0;
     return block;
   }
   const std::size_t capacity = lanes_of(size_class) * WindowBlock::lanes;

@@ -60,6 +60,7 @@ struct WindowBlock {
   Index size = 0;
   Index capacity = 0;  ///< a multiple of `lanes`; the last `lanes` places are for vector instructions to scribble on
   Index size_class = 0;
+  Index depth = 0;  ///< least number of faces that its windows have crossed
   static constexpr Index lanes = 8;
 
   static constexpr std::size_t header_doubles = 8;  ///< keeps the arrays on their own cache lines
