@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "isopath/field/checked_distances.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/graph_field.h"
+#include "isopath/mesh/read_mesh.h"
 #include "support/random_sources.h"
 #include "support/test_meshes.h"
 
@@ -54,11 +56,8 @@ RelativeErrors errors_against_exact(const TriangleMesh& mesh, const SourceSet& s
   return errors_of(virtual_source_distances(mesh, sources), exact.vertex_distances());
 }
 
-TEST(VirtualSource, IsNeverTooShortAndAlmostAlwaysExactFromAPointOnAConvexPlane) {
-  // A half-edge keeps one beam; where it would have needed two, some vertices see no light and the way bends.
-  int exact = 0;
-  const int n_cases = 60;
-  for (std::uint64_t seed = 0; seed < n_cases; ++seed) {
+TEST(VirtualSource, IsExactFromAPointOnAConvexPlane) {
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
     SCOPED_TRACE(seed);
     Rng rng(seed);
     const TriangleMesh mesh = planar_grid(23, 17, random_real(rng, 5, 60), 17, {.jitter = 0.24, .seed = seed});
@@ -66,16 +65,10 @@ TEST(VirtualSource, IsNeverTooShortAndAlmostAlwaysExactFromAPointOnAConvexPlane)
     SourceSet source;
     source.add_point(start);
     const auto distance = virtual_source_distances(mesh, source);
-    double worst = 0;
     for (Index v = 0; v < mesh.n_vertices(); ++v) {
-      const double truth = (mesh.position(v) - position_of(mesh, start)).norm();
-      EXPECT_GE(distance[v], truth - rounding * mesh.size());
-      worst = std::max(worst, distance[v] - truth);
+      EXPECT_NEAR(distance[v], (mesh.position(v) - position_of(mesh, start)).norm(), rounding * mesh.size());
     }
-    EXPECT_LT(worst, 0.01 * mesh.size());
-    exact += worst < rounding * mesh.size() ? 1 : 0;
   }
-  EXPECT_GE(exact, 0.95 * n_cases);
 }
 
 TEST(VirtualSource, BringsStraightFrontsOverAPlane) {
@@ -85,11 +78,7 @@ TEST(VirtualSource, BringsStraightFrontsOverAPlane) {
   for (Index j = 0; j <= 9; ++j) line.push_back(point_at_vertex(mesh, j * 14));
   left.add_polyline(mesh, line, false);
   const auto distance = virtual_source_distances(mesh, left);
-  // The nearest segment's beam may have left a half-edge to that of a neighbour, whose end is a little farther away.
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    EXPECT_GE(distance[v], mesh.position(v).x() - rounding * 13);
-    EXPECT_LE(distance[v], mesh.position(v).x() * 1.002 + rounding * 13);
-  }
+  for (Index v = 0; v < mesh.n_vertices(); ++v) EXPECT_NEAR(distance[v], mesh.position(v).x(), rounding * 13);
 }
 
 TEST(VirtualSource, BendsAtReflexCorners) {
@@ -112,8 +101,8 @@ TEST(VirtualSource, BendsAtReflexCorners) {
   }
 }
 
-TEST(VirtualSource, IsHardlyEverTooShortOnFlatParts) {
-  // Ways are real ones, but for light that joins over narrow shadows.
+TEST(VirtualSource, IsLittleTooShortOnFlatParts) {
+  // Too short it is only where two fronts meet within a face, and these faces are few and large.
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     Rng rng(seed);
@@ -122,7 +111,7 @@ TEST(VirtualSource, IsHardlyEverTooShortOnFlatParts) {
                                               : planar_star(static_cast<int>(3 + seed % 7), 5, 1);
     const SourceSet sources = random_sources(rng, mesh);
     const RelativeErrors errors = errors_against_exact(mesh, sources);
-    EXPECT_GT(errors.lowest, -5e-3);
+    EXPECT_GT(errors.lowest, -0.06);
   }
 }
 
@@ -136,7 +125,9 @@ TEST(VirtualSource, UnfoldsACylinder) {
     const int side = static_cast<int>(v) % n;
     const double around = chord * std::min(side, n - side);
     const double truth = std::hypot(around, mesh.position(v).z() - mesh.position(0).z());
-    EXPECT_NEAR(distance[v], truth, 1e-3 * truth + rounding) << v;
+    // where the fronts from both sides meet, half-way round, what passes is held up by an edge at most
+    const bool apart = std::abs(2 * side - n) > 8;
+    EXPECT_NEAR(distance[v], truth, (apart ? rounding : 1e-3) * truth + rounding) << v;
   }
 }
 
@@ -170,6 +161,29 @@ TEST(VirtualSource, MeanErrorOnWavySheetsIsBelowAQuarterOfAPercent) {
   }
 }
 
+TEST(VirtualSource, MeanErrorOnRoughSurfacesIsBelowAQuarterOfAPercent) {
+  // a ball with noise in all directions by a tenth of an edge
+  TriangleSoup soup = icosphere(4, 1).soup();
+  Rng rng(3);
+  for (Vec3& p : soup.positions) {
+    p *= 1 + 0.1 * std::sin(6 * p.x()) * std::cos(5 * p.y());
+    for (int i = 0; i < 3; ++i) p[i] += random_real(rng, -0.007, 0.007);
+  }
+  const TriangleMesh mesh(std::move(soup));
+  EXPECT_LT(errors_against_exact(mesh, vertex_source(mesh, 7)).mean, 0.0025);
+}
+
+TEST(VirtualSource, MeanErrorOnScansIsBelowAQuarterOfAPercent) {
+  const std::filesystem::path folder = std::filesystem::path(ISOPATH_SHARED_DIR) / "surfaces";
+  for (const char* name : {"lion_head_scan.off", "face_scan.ply"}) {
+    if (!std::filesystem::exists(folder / name)) GTEST_SKIP() << "there is no " << folder / name;
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh(read_mesh(folder / name).soup);
+    EXPECT_LT(errors_against_exact(mesh, vertex_source(mesh, mesh.n_vertices() / 2)).mean, 0.0025);
+    EXPECT_LT(errors_against_exact(mesh, boundary_source(mesh)).mean, 0.0025);
+  }
+}
+
 TEST(VirtualSource, StaysAccurateOnThinTriangles) {
   const TriangleMesh mesh = lofted_blade(40, 40);
   EXPECT_LT(errors_against_exact(mesh, vertex_source(mesh, mesh.n_vertices() / 2)).mean, 0.003);
@@ -190,6 +204,29 @@ TEST(VirtualSource, ReachesWhatEdgesReachAndIsNeverLongerThanTheWayAlongThem) {
       EXPECT_LE(distance[v], along_edges[v] * (1 + rounding));
       EXPECT_EQ(distance[v] == infinity, along_edges[v] == infinity);
     }
+  }
+}
+
+TEST(VirtualSource, DiffersAlongAnEdgeByItsLengthAtMost) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh =
+        random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
+    const SourceSet sources = random_sources(rng, mesh);
+    const auto distance = virtual_source_distances(mesh, sources);
+    for (Index h = 0; h < 3 * mesh.n_faces(); ++h) {
+      const double least = distance[mesh.from(h)];
+      EXPECT_LE(distance[mesh.to(h)], (least + mesh.edge_length(mesh.edge_of(h))) * (1 + rounding));
+    }
+  }
+}
+
+TEST(VirtualSource, SolverServesManySources) {
+  const TriangleMesh mesh = wavy_sheet(20, 1, 0.1, 6, 5, 4);
+  const VirtualSourceSolver solver(mesh);
+  for (const SourceSet& sources : {vertex_source(mesh, 7), boundary_source(mesh), vertex_source(mesh, 300)}) {
+    EXPECT_EQ(solver.distances(sources), virtual_source_distances(mesh, sources));
   }
 }
 

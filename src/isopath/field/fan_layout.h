@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "isopath/field/large_pages.h"
+#include "isopath/mesh/triangle_mesh.h"
+
+namespace isopath {
+
+/// An edge from the vertex in the middle of a fan, and the face between it and the next edge counter-clockwise.
+struct FanSpoke {
+  std::uint32_t end;  ///< the vertex at its other end
+  float length;
+  float cosine;  ///< of the face's angle in the middle
+  float sine;
+};
+
+/// The faces around every vertex as a fan of spokes, one fan after the other in memory and in single precision: all
+/// that a front needs to step from a vertex on. Lengths are divided by `unit`, a power of two near the mean edge
+/// length, so that single precision serves every scale and scaling by powers of two rounds nothing.
+class FanLayout {
+ public:
+  explicit FanLayout(const TriangleMesh& mesh);
+
+  struct Fan {
+    std::span<const FanSpoke> spokes;  ///< one more than faces where the vertex lies on the boundary
+    bool closed;
+    bool bends;  ///< a saddle or a reflex corner of the boundary by more than a little: shortest ways may bend here
+  };
+  Fan fan(std::uint32_t vertex) const {
+    const Head& head = heads_[vertex];
+    const std::uint32_t first = head.first;
+    return {{&spokes_[first], heads_[vertex + 1].first - first}, head.closed, head.bends};
+  }
+  bool bends(std::uint32_t vertex) const { return heads_[vertex].bends; }
+  /// Fetches a fan into the cache ahead of its use.
+  void prefetch(std::uint32_t vertex) const {
+    const FanSpoke* first = &spokes_[heads_[vertex].first];
+    __builtin_prefetch(first);
+    __builtin_prefetch(first + 4);
+    __builtin_prefetch(first + 6);
+  }
+  void prefetch_head(std::uint32_t vertex) const { __builtin_prefetch(&heads_[vertex]); }
+
+  double unit() const { return unit_; }
+  /// Spokes of the largest fan.
+  std::size_t most_spokes() const { return most_spokes_; }
+
+ private:
+  struct Head {
+    std::uint32_t first;
+    bool closed;
+    bool bends;
+  };
+
+  double unit_ = 1;
+  std::size_t most_spokes_ = 0;
+  LargeVector<Head> heads_;
+  LargeVector<FanSpoke> spokes_;
+};
+
+}  // namespace isopath
