@@ -437,7 +437,7 @@ class Interrupt(Program):
         _, text = grid_off(side, side, 1)
         large = self.path("large.off")
         self.write(large, text)
-        arguments = [PROGRAM, "plan", large, "--spacing", "0.4"]
+        arguments = [PROGRAM, "plan", large, "--spacing", "0.8"]
         started = time.monotonic()
         self.assertEqual(subprocess.run([*arguments, "-o", self.path("whole")], capture_output=True).returncode, OK)
         duration = time.monotonic() - started

@@ -66,7 +66,7 @@ TEST(AxisJumps, AreNotSeenInASlowTurnNorAcrossALift) {
 }
 
 TEST(CheckFacing, RefusesWhatTheSourcesReachAndTheToolDoesNot) {
-  const TriangleMesh sphere = test::icosphere(10, 3);
+  const TriangleMesh sphere = test::icosphere(3, 10);
   const ToolOptions up{.axis_mode = AxisMode::fixed_direction, .fixed_axis = {0, 0, 3}};
   std::vector<double> distances(sphere.n_vertices(), 1.0);
   try {
