@@ -215,6 +215,32 @@ TEST(gap_repair, sees_with_each_round_what_the_whole_field_shows) {
   }
 }
 
+TEST(gap_repair, goes_out_and_back_on_both_sides_of_an_open_level) {
+  const test::Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
+  const std::vector<double> xs{1, 3};
+  const ImpactCurve curve = test::parallel_lines(plate.linker, xs, 20);
+  const CoverField cover = distance_from_cover(plate.mesh, curve, 2, Progress::none());
+  Contour open;
+  for (const SurfacePoint& p : test::line(plate.linker, Vec3(5, 4, 0), Vec3(5, 14, 0)).points) open.points.push_back(p);
+  const double width = 0.3;
+  const Replacement detour = detour_along(open, plate.linker, plate.normals, curve, cover, width);
+  double covered = 0;
+  for (std::size_t i = 1; i < detour.points.size(); ++i) {
+    const ImpactPoint& p = detour.points[i];
+    const double step = (p.position - detour.points[i - 1].position).norm();
+    if (p.kind != MoveKind::cover) {
+      EXPECT_NEAR(p.position.y(), 4, 4 * cover_accuracy) << "a link anywhere but between the curve and the level";
+      continue;
+    }
+    covered += step;
+    EXPECT_LE(std::abs(p.position.x() - 5), 0.5 * width + 1e-9);
+    const bool at_an_end = p.position.y() < 6 || p.position.y() > 14 - 1e-9;
+    if (at_an_end || detour.points[i - 1].position.y() < 6) continue;
+    EXPECT_NEAR(std::abs(p.position.x() - 5), 0.5 * width, 1e-9);
+  }
+  EXPECT_NEAR(covered, 2 * 10 + width, 0.1);
+}
+
 TEST(ridge_passes, cover_a_ridge_in_one_go) {
   const test::Plate plate{test::planar_grid(15, 15, 20, 20, {.jitter = 0.2})};
   const std::vector<double> xs{1, 3, 5, 7, 8.5, 11.5, 13, 15, 17, 19};

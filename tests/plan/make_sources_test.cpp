@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -58,6 +59,26 @@ TEST(MakeSources, BoundaryIsAllLoopsOrOne) {
   EXPECT_NEAR(segment_length(mesh, sources_of(mesh, {"auto"})), 2 * ring, 1e-9);
   expect_refused(mesh, "boundary:2", {"loop 2 of 2", "0 to 1"});
   expect_refused(test::cube(2, 1), "boundary", {"closed"});
+}
+
+TEST(MakeSources, AutoIsTheLongestLoopOfEveryComponentOnRequest) {
+  const TriangleMesh tube = test::open_cylinder(12, 4, 5, 8);
+  const TriangleMesh cube = test::cube(2, 1);
+  TriangleSoup soup = tube.soup();
+  const TriangleSoup other = cube.soup();
+  for (const Vec3& p : other.positions) soup.positions.push_back(p + Vec3(50, 0, 0));
+  const Index first = tube.n_vertices();
+  for (const Triangle& t : other.triangles) soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  for (Vec3& p : soup.positions) {
+    if (p.x() < 40 && p.z() < 1e-9) p *= 1.5;  // the lower loop becomes the longer one
+  }
+  const TriangleMesh mesh = TriangleMesh(soup);
+  const SourceSet sources =
+      make_sources(mesh, std::vector{SourceSpec{}}, identity(mesh), Progress::none(), AutoLoops::longest);
+  EXPECT_NEAR(segment_length(mesh, sources), 12 * 2 * 7.5 * std::sin(std::numbers::pi / 12), 1e-9);
+  EXPECT_TRUE(std::any_of(sources.elements().begin(), sources.elements().end(), [&](const SourceElement& e) {
+    return position_of(mesh, e.a).x() > 40;  // a closed component keeps its vertex
+  }));
 }
 
 TEST(MakeSources, VerticesAreThoseOfTheFile) {

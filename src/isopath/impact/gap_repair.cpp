@@ -25,6 +25,8 @@ constexpr double first_loop = 0.575;
 constexpr double bump_margin = 0.005;
 /// No place is overlooked that is farther from the curve than half the widest gap and this, in spacings.
 constexpr double resolution = 0.01;
+/// Along an open level the curve turns back by a half circle, which rounding leaves as it is.
+constexpr double way_back_over_radius = 2.2;
 /// A swell gives what it takes from the other side of the curve; where that is missed, turns end the to and fro.
 constexpr int rounds_of_swells = 3;
 
@@ -67,6 +69,26 @@ std::vector<Contour> loops_in(const TriangleMesh& mesh, const ExactField& field,
       kept.push_back(std::move(set.contours[k]));
   }
   return kept;
+}
+
+/// The closed curve around an open one at a small distance, from where that begins.
+Contour both_sides_of(const SurfaceLinker& linker, const Contour& open, double distance) {
+  const TriangleMesh& mesh = linker.mesh();
+  SurfaceCurve around;
+  const auto add_beside = [&](std::size_t i, double side) {
+    const Vec3 along = position_of(mesh, open.points[std::min(i + 1, open.points.size() - 1)]) -
+                       position_of(mesh, open.points[i > 0 ? i - 1 : 0]);
+    const Vec3 aside = mesh.face_normal(open.points[i].face).cross(along).stableNormalized();
+    const NearestPoint there =
+        linker.locator().nearest(position_of(mesh, open.points[i]) + side * distance * aside, 2 * distance);
+    if (there.at.valid()) linker.extend(around, there.at);
+  };
+  around.add(mesh, open.points.front());
+  for (std::size_t i = 1; i < open.points.size(); ++i) add_beside(i, -1);
+  for (std::size_t i = open.points.size(); i-- > 1;) add_beside(i, 1);
+  linker.extend(around, open.points.front());
+  around.points.pop_back();
+  return {.level = open.level, .closed = true, .points = std::move(around.points)};
 }
 
 class GapCloser {
@@ -155,9 +177,10 @@ class GapCloser {
       farthest = std::max(farthest, spot.cells.front().distance);
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }
+    const double width = way_back_over_radius * limits_.radius;
     for (const Contour& contour : loops_in(mesh_, cover.field, w, std::move(wide), farthest, progress_)) {
       progress_.checkpoint();
-      replacements.push_back(detour_along(contour, linker_, normals_, curve_, cover));
+      replacements.push_back(detour_along(contour, linker_, normals_, curve_, cover, width));
     }
     return replacements;
   }
@@ -174,8 +197,12 @@ class GapCloser {
 }  // namespace
 
 Replacement detour_along(const Contour& contour, const SurfaceLinker& linker, const SmoothNormals& normals,
-                         const ImpactCurve& curve, const CoverField& cover) {
+                         const ImpactCurve& curve, const CoverField& cover, double width) {
   const TriangleMesh& mesh = linker.mesh();
+  if (!contour.closed && width > 0) {
+    Contour around = both_sides_of(linker, contour, 0.5 * width);
+    if (around.points.size() > 2) return detour_along(around, linker, normals, curve, cover);
+  }
   const SurfacePoint& start = contour.points.front();
   std::vector<SurfacePoint> way_back = cover.field.shortest_path(start);
   Replacement detour;

@@ -50,10 +50,11 @@ ClosedGaps close_gaps_beside(const SurfaceLinker& linker, const SmoothNormals& n
 ClosedGaps close_gaps_everywhere(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                                  const GapLimits& limits, Progress& progress = Progress::none());
 
-/// A way out of the curve to a contour, along it, and back: round a closed one, along an open one as a link. Its first
-/// point should be the one nearest to the curve.
+/// A way out of the curve to a contour, along it, and back: round a closed one; along an open one as a link, or, with a
+/// width, out on one side of it and back on the other, that far apart (mm). Its first point should be the one nearest
+/// to the curve.
 Replacement detour_along(const Contour& contour, const SurfaceLinker& linker, const SmoothNormals& normals,
-                         const ImpactCurve& curve, const CoverField& cover);
+                         const ImpactCurve& curve, const CoverField& cover, double width = 0);
 
 /// Puts replacements into a curve; of those that overlap only the first. Returns how many were.
 int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements);

@@ -61,7 +61,9 @@ double reached_area(const TriangleMesh& mesh, std::span<const double> values) {
 }  // namespace
 
 ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
-                        const ImpactOptions& options, Progress& progress) {
+                        const ImpactOptions& options, Progress& progress,
+                        const std::function<const SurfaceFunction&()>& two_way_function) {
+  const auto two_way = [&]() -> const SurfaceFunction& { return two_way_function ? two_way_function() : function; };
   ImpactOptions tried = options;
   tried.pattern = pattern_of(mesh, function, values, progress);
   // Gaps are closed where it is certain that the curve is the one: that takes longer than all else.
@@ -69,16 +71,18 @@ ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& functio
   const ImpactPlan draft = plan_impact(mesh, function, tried, progress);
   if (lifts_of(draft.curve) > 0) {
     const Pattern first = std::exchange(tried.pattern, Pattern::two_way);
-    if (!clearly_better(plan_impact(mesh, function, tried, progress).curve, draft.curve)) tried.pattern = first;
+    const SurfaceFunction& other = two_way();
+    if (!clearly_better(plan_impact(mesh, other, tried, progress).curve, draft.curve)) tried.pattern = first;
     tried.close_gaps = options.close_gaps;
-    return {tried.pattern, plan_impact(mesh, function, tried, progress)};
+    const SurfaceFunction& better = tried.pattern == Pattern::two_way ? other : function;
+    return {tried.pattern, plan_impact(mesh, better, tried, progress)};
   }
   tried.close_gaps = options.close_gaps;
   ChosenPlan chosen{tried.pattern, plan_impact(mesh, function, tried, progress)};
   const double ratio = length_on_surface(chosen.plan.curve) * options.spacing / reached_area(mesh, values);
   if (ratio <= good_length_ratio) return chosen;
   tried.pattern = Pattern::two_way;
-  ChosenPlan other{tried.pattern, plan_impact(mesh, function, tried, progress)};
+  ChosenPlan other{tried.pattern, plan_impact(mesh, two_way(), tried, progress)};
   return clearly_better(other.plan.curve, chosen.plan.curve) ? std::move(other) : std::move(chosen);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "isopath/core/progress.h"
@@ -17,8 +18,10 @@ struct ChosenPlan {
 /// meander. Where that lifts, or is longer than 1.12 area / spacing, a two-way curve is planned besides, and taken if
 /// it lifts less often and is at most 5 % longer, or lifts as often and the other one is more than 10 % longer; lengths
 /// are those on the surface, where the first one lifts before gaps are closed. `values` are the function's at the
-/// vertices; the pattern in `options` is not looked at. Throws what `plan_impact` does.
+/// vertices; the pattern in `options` is not looked at. `two_way_function` gives another function for the two-way
+/// curve, if it is not empty. Throws what `plan_impact` does.
 ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
-                        const ImpactOptions& options, Progress& progress = Progress::none());
+                        const ImpactOptions& options, Progress& progress = Progress::none(),
+                        const std::function<const SurfaceFunction&()>& two_way_function = {});
 
 }  // namespace isopath

@@ -65,8 +65,9 @@ Range range_of(const TriangleMesh& mesh, const VertexField& height) {
 /// The mesh and what is worked out on it once for all specs.
 class Maker {
  public:
-  Maker(const TriangleMesh& mesh, std::span<const Index> vertex_of_file_vertex, Progress& progress)
-      : mesh_(mesh), vertex_of_file_vertex_(vertex_of_file_vertex), progress_(progress) {}
+  Maker(const TriangleMesh& mesh, std::span<const Index> vertex_of_file_vertex, Progress& progress,
+        AutoLoops loops = AutoLoops::all)
+      : mesh_(mesh), vertex_of_file_vertex_(vertex_of_file_vertex), progress_(progress), loops_(loops) {}
 
   void add(const SourceSpec& spec) {
     progress_.checkpoint();
@@ -141,6 +142,7 @@ class Maker {
   const TriangleMesh& mesh_;
   std::span<const Index> vertex_of_file_vertex_;
   Progress& progress_;
+  AutoLoops loops_;
   std::optional<SurfaceLocator> locator_;
   SourceSet sources_;
 };
@@ -186,8 +188,9 @@ std::vector<Index> far_vertices(const TriangleMesh& mesh) {
 
 void Maker::add_automatic() {
   std::vector<char> has_boundary(mesh_.n_components(), 0);
-  for (const auto& loop : mesh_.boundary_loops()) {
-    has_boundary[mesh_.component_of(TriangleMesh::face_of(loop.front()))] = 1;
+  for (const auto& loop : mesh_.boundary_loops()) {  // the longest comes first
+    char& seen = has_boundary[mesh_.component_of(TriangleMesh::face_of(loop.front()))];
+    if (std::exchange(seen, 1) && loops_ == AutoLoops::longest) continue;
     sources_.add_halfedges(mesh_, loop, true);
   }
   const std::vector<Index> far = far_vertices(mesh_);
@@ -352,8 +355,8 @@ void Maker::add_segment(const SourceSpec& spec) {
 }  // namespace
 
 SourceSet make_sources(const TriangleMesh& mesh, std::span<const SourceSpec> specs,
-                       std::span<const Index> vertex_of_file_vertex, Progress& progress) {
-  Maker maker(mesh, vertex_of_file_vertex, progress);
+                       std::span<const Index> vertex_of_file_vertex, Progress& progress, AutoLoops loops) {
+  Maker maker(mesh, vertex_of_file_vertex, progress, loops);
   for (const SourceSpec& spec : specs) maker.add(spec);
   return maker.take();
 }

@@ -118,9 +118,16 @@ struct Field {
   std::vector<std::vector<SurfacePoint>> ridges = {};  ///< see FieldSamples; none where nothing was smoothed
 };
 
-ExactField distances_on(const Part& part, const Job& job, const std::optional<IntrinsicGeometry>& metric,
+/// A closed curve is crossed an even number of times between two places of the boundary, and so goes to and fro along
+/// all of the medial axis. Each hole that distances are measured from adds a loop to that axis, longer than the hole's
+/// edge; passes that end at the hole follow only half of this edge.
+AutoLoops loops_for(const Job& job) {
+  return job.pattern == Pattern::two_way && !job.blend ? AutoLoops::longest : AutoLoops::all;
+}
+
+ExactField distances_on(const Part& part, const Job& job, const IntrinsicGeometry* metric, AutoLoops loops,
                         double accuracy, Progress& progress) {
-  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress);
+  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress, loops);
   const ExactFieldOptions options{.accuracy = accuracy};
   return metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
                 : ExactField::compute(part.mesh, sources, options, progress);
@@ -139,13 +146,21 @@ void refine_part(RefinedMesh refined, Part& part, std::optional<IntrinsicGeometr
 Field smoothed_field(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
   const double width = result.job.smooth;
   refine_part(refine_for_smoothing(result.part.mesh, result.spacing, width), result.part, metric);
-  FieldSamples samples =
-      sample_for_smoothing(distances_on(result.part, result.job, metric, 0, progress), result.spacing, progress);
-  refine_part(std::move(samples.refined), result.part, metric);
   const IntrinsicGeometry* geometry = metric ? &*metric : nullptr;
+  FieldSamples samples = sample_for_smoothing(
+      distances_on(result.part, result.job, geometry, loops_for(result.job), 0, progress), result.spacing, progress);
+  refine_part(std::move(samples.refined), result.part, metric);
+  geometry = metric ? &*metric : nullptr;
   std::vector<double> values = smoothed_distances(result.part.mesh, geometry, samples.distances, width, progress);
   auto function = std::make_unique<VertexField>(result.part.mesh, values);
   return {.function = std::move(function), .at_vertices = std::move(values), .ridges = std::move(samples.ridges)};
+}
+
+Field exact_field(const PlanResult& result, const IntrinsicGeometry* metric, AutoLoops loops, Progress& progress) {
+  auto exact = std::make_unique<ExactField>(
+      distances_on(result.part, result.job, metric, loops, field_accuracy * result.part.mesh.size(), progress));
+  std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
+  return {std::move(exact), std::move(values)};
 }
 
 Field field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
@@ -157,10 +172,7 @@ Field field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Pro
     return {std::move(height), std::move(values)};
   }
   if (result.job.smooth > 0) return smoothed_field(result, metric, progress);
-  auto exact = std::make_unique<ExactField>(
-      distances_on(result.part, result.job, metric, field_accuracy * mesh.size(), progress));
-  std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
-  return {std::move(exact), std::move(values)};
+  return exact_field(result, metric ? &*metric : nullptr, loops_for(result.job), progress);
 }
 
 void warn_of_unreached(const TriangleMesh& mesh, const std::vector<double>& distances,
@@ -219,7 +231,7 @@ ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& p
 }
 
 /// The impact curve, with the pattern the job names or one that suits the part.
-void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry* metric, Progress& progress) {
+void plan_curve(PlanResult& result, Field& field, const IntrinsicGeometry* metric, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   ImpactOptions options{.spacing = result.spacing,
                         .clearance = result.job.clearance,
@@ -238,7 +250,14 @@ void plan_curve(PlanResult& result, const Field& field, const IntrinsicGeometry*
     if (!smooth) result.impact = plan_impact(mesh, *field.function, options, progress);
   } else {
     options.close_gaps = !smooth;  // plan_with_repair does
-    ChosenPlan chosen = plan_by_part(mesh, *field.function, field.at_vertices, options, progress);
+    Field one_loop;
+    const auto two_way_function = [&]() -> const SurfaceFunction& {
+      if (smooth || mesh.boundary_loops().size() < 2) return *field.function;
+      one_loop = exact_field(result, metric, AutoLoops::longest, progress);
+      return *one_loop.function;
+    };
+    ChosenPlan chosen = plan_by_part(mesh, *field.function, field.at_vertices, options, progress, two_way_function);
+    if (chosen.pattern == Pattern::two_way && one_loop.function) field = std::move(one_loop);
     options.pattern = chosen.pattern;
     result.impact = std::move(chosen.plan);
   }

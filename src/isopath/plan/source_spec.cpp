@@ -146,7 +146,8 @@ std::size_t length_of_first_list(const SourceSpec& spec) {
 }  // namespace
 
 std::string_view source_spec_forms() {
-  return "    auto                every boundary; on a closed part the vertex at its far end\n"
+  return "    auto                every boundary, for two-way the longest of each part; on a closed part the vertex at "
+         "its far end\n"
          "    boundary            every boundary loop\n"
          "    boundary:K          loop K, counted from 0, longest first\n"
          "    vertex:I,J,...      vertices, numbered from 0 as in the file\n"

@@ -14,14 +14,16 @@ namespace isopath {
 /// A search varies `numbers`, in the units stated.
 struct SourceSpec {
   enum class Kind {
-    automatic,  ///< the boundary of every component that has one; else the vertex at the end of its longest box axis
-    boundary,   ///< every boundary loop, or those in `indices`
-    vertex,     ///< the vertices in `indices`
-    point,      ///< the point of the surface nearest to `numbers` = x, y, z
-    polyline,   ///< the points of `file`, one `x,y,z` a line, brought to the surface and joined on it
-    plane,      ///< where the plane nx x + ny y + nz z = d cuts the surface; `numbers` = nx, ny, nz, d
-    edges,      ///< edges whose faces meet at more than `numbers` = {angle in degrees}
-    geodesic,   ///< through the points `numbers` = x, y, z, x, y, z, and straight on to the boundary either way
+    /// the boundary of every component that has one, for two-way curves its longest loop; else the vertex at the end of
+    /// its longest box axis
+    automatic,
+    boundary,  ///< every boundary loop, or those in `indices`
+    vertex,    ///< the vertices in `indices`
+    point,     ///< the point of the surface nearest to `numbers` = x, y, z
+    polyline,  ///< the points of `file`, one `x,y,z` a line, brought to the surface and joined on it
+    plane,     ///< where the plane nx x + ny y + nz z = d cuts the surface; `numbers` = nx, ny, nz, d
+    edges,     ///< edges whose faces meet at more than `numbers` = {angle in degrees}
+    geodesic,  ///< through the points `numbers` = x, y, z, x, y, z, and straight on to the boundary either way
     /// Where a plane cuts the surface; `numbers` = x, y, z of a point in it or the one signed distance of the plane
     /// from the middle of the part's box; then the angle of its trace from x towards y, and, if not 0, how far it leans
     /// to the left of that, both in degrees (cut_normal in curve_sources.h).
