@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "bumpy_ball.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/fast_marching.h"
 #include "isopath/field/graph_field.h"
@@ -28,6 +29,7 @@ std::vector<double> graph(const TriangleMesh& mesh, const SourceSet& sources) {
 }
 
 TriangleMesh wavy(std::int64_t cells) { return test::wavy_sheet(static_cast<int>(cells), 1, 0.1, 6, 5, 1); }
+TriangleMesh ball(std::int64_t level) { return bumpy_ball(static_cast<int>(level)); }
 TriangleMesh blade(std::int64_t cells) { return test::lofted_blade(static_cast<int>(cells), static_cast<int>(cells)); }
 
 /// Errors are measured on meshes of up to this many triangles; on larger ones exact distances take too long to compare.
@@ -70,6 +72,24 @@ void from_boundary(benchmark::State& state, const Method& method, TriangleMesh (
   run(state, method, mesh, boundary_source(mesh));
 }
 
+/// With the mesh prepared before.
+void from_vertex_prepared(benchmark::State& state, TriangleMesh (*make)(std::int64_t)) {
+  const TriangleMesh mesh = make(state.range(0));
+  const VirtualSourceSolver solver(mesh);
+  SourceSet source;
+  source.add_vertex(mesh, mesh.n_vertices() / 2);
+  run(
+      state, [&](const TriangleMesh&, const SourceSet& sources) { return solver.distances(sources); }, mesh, source);
+}
+
+void from_boundary_prepared(benchmark::State& state, TriangleMesh (*make)(std::int64_t)) {
+  const TriangleMesh mesh = make(state.range(0));
+  const VirtualSourceSolver solver(mesh);
+  run(
+      state, [&](const TriangleMesh&, const SourceSet& sources) { return solver.distances(sources); }, mesh,
+      boundary_source(mesh));
+}
+
 #define ISOPATH_APPROXIMATE(method)                                                                                 \
   BENCHMARK_CAPTURE(from_vertex, method##_wavy, method, wavy)->Arg(200)->Arg(500)->Unit(benchmark::kMillisecond);   \
   BENCHMARK_CAPTURE(from_boundary, method##_wavy, method, wavy)->Arg(200)->Arg(500)->Unit(benchmark::kMillisecond); \
@@ -81,6 +101,12 @@ ISOPATH_APPROXIMATE(fast_marching);
 ISOPATH_APPROXIMATE(graph);
 BENCHMARK_CAPTURE(from_vertex, virtual_sources_wavy, virtual_sources, wavy)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(from_boundary, virtual_sources_wavy, virtual_sources, wavy)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_vertex, virtual_sources_ball, virtual_sources, ball)->Arg(6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_vertex_prepared, wavy, wavy)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_boundary_prepared, wavy, wavy)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_vertex_prepared, blade, blade)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_boundary_prepared, blade, blade)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(from_vertex_prepared, ball, ball)->Arg(6)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace isopath

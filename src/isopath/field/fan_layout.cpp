@@ -24,10 +24,10 @@ class AngleSum {
   void add(float cosine, float sine) {
     const float x = x_ * cosine - y_ * sine;
     const float y = x_ * sine + y_ * cosine;
-    const bool past_half_turn = y < 0 || (y == 0 && x < 0);
-    half_turns_ += past_half_turn ? 1 : 0;
-    x_ = past_half_turn ? -x : x;
-    y_ = past_half_turn ? -y : y;
+    const float sign = std::copysign(1.0F, y);  // a branch would be guessed wrongly twice a fan
+    half_turns_ += sign < 0 ? 1 : 0;
+    x_ = sign * x;
+    y_ = sign * y;
   }
   /// Whether the sum is more than so many half turns and a slight angle.
   bool exceeds(int half_turns, float slight) const {

@@ -20,7 +20,7 @@ constexpr float grazing = 1e-4F;
 /// its height over the edge, the ends of the edge belong to two fronts that met, and nothing goes through between them.
 constexpr float met = 0.2F;
 /// Width of a bucket of the queue in units of the layout.
-constexpr float bucket_step = 0.5F;
+constexpr float bucket_step = 1;
 
 // What a vertex is up to; one that waits in the queue is not settled.
 constexpr std::uint32_t is_settled = 1;   ///< has handed its distance on
@@ -114,6 +114,7 @@ class Propagation {
 
 [[gnu::always_inline]] inline void Propagation::hand_over(std::uint32_t vertex, const Arrival& arrival) {
   Arrival& held = arrivals_[vertex];
+  if (!(arrival.distance < held.distance)) return;  // a vertex may be twice in a fan
   const std::uint32_t revised = (held.state & is_settled) != 0 ? was_settled : 0;
   held = {arrival.distance, arrival.bent, arrival.source, revised | (held.state & (was_settled | is_awaited))};
   queue_.push(arrival.distance, vertex);
@@ -131,12 +132,13 @@ void Propagation::settle(std::uint32_t vertex) {
   const std::span<const FanSpoke> spokes = fan.spokes;
   const std::size_t n = spokes.size();
   for (std::size_t i = 0; i < n; ++i) around_[i] = arrivals_[spokes[i].end];
-  step_through_faces(own, fan);
+  const Arrival here = own;
+  step_through_faces(here, fan);
 
-  const float bent = fan.bends ? own.distance : own.bent;
-  const std::uint32_t source = fan.bends ? vertex : own.source;
+  const float bent = fan.bends ? here.distance : here.bent;
+  const std::uint32_t source = fan.bends ? vertex : here.source;
   for (std::size_t i = 0; i < n; ++i) {
-    const float distance = own.distance + spokes[i].length;
+    const float distance = here.distance + spokes[i].length;
     if (distance < around_[i].distance * (1 - single_rounding)) hand_over(spokes[i].end, {distance, bent, source, 0});
   }
   if (look_again) wake(fan);
@@ -145,8 +147,8 @@ void Propagation::settle(std::uint32_t vertex) {
 void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& fan) {
   const std::size_t n = fan.spokes.size();
   const std::size_t n_faces = fan.closed ? n : std::max<std::size_t>(n, 1) - 1;
-  const bool both_ways =
-      (here.state & was_settled) != 0;  // the nearer end may have been served through an old distance
+  // After a new distance the nearer end of a spoke may have been served through the old one.
+  const bool both_ways = (here.state & was_settled) != 0;
   for (std::size_t i = 0; i < n_faces; ++i) {
     const bool to_left = around_[i].distance <= around_[i + 1 == n ? 0 : i + 1].distance;
     step_through_face(here, fan, i, to_left);
