@@ -156,5 +156,31 @@ TEST(CutAlong, CrossingLinesCutEachOther) {
   EXPECT_EQ(*std::max_element(part.begin(), part.end()) + 1, 5);
 }
 
+TEST(OpenedAlong, HasBothSidesOfTheCutOnItsBoundary) {
+  // from the rim to the middle: still one loop; from rim to rim: two parts
+  const TriangleMesh mesh = test::planar_grid(8, 8, 8, 8);
+  for (const double end : {4.0, 8.0}) {
+    std::vector<char> is_cut(mesh.n_edges(), 0);
+    for (Index e = 0; e < mesh.n_edges(); ++e) {
+      const Index h = mesh.halfedge_of(e);
+      const Vec3& a = mesh.position(mesh.from(h));
+      const Vec3& b = mesh.position(mesh.to(h));
+      is_cut[e] = a.y() == 4 && b.y() == 4 && std::max(a.x(), b.x()) <= end;
+    }
+    const TriangleMesh opened = opened_along(mesh, is_cut);
+    ASSERT_EQ(opened.n_faces(), mesh.n_faces());
+    for (Index f = 0; f < mesh.n_faces(); ++f) {
+      for (int i = 0; i < 3; ++i)
+        EXPECT_EQ(opened.position(opened.triangle(f)[i]), mesh.position(mesh.triangle(f)[i])) << "face " << f;
+    }
+    // the end of a cut inside stays one vertex, any other vertex of it becomes two
+    EXPECT_EQ(opened.n_vertices() - mesh.n_vertices(), end == 8 ? 9 : 4);
+    EXPECT_EQ(opened.n_components(), end == 8 ? 2 : 1);
+    double rim = 0;
+    for (Index e = 0; e < opened.n_edges(); ++e) rim += opened.is_boundary_edge(e) ? opened.edge_length(e) : 0;
+    EXPECT_NEAR(rim, 32 + 2 * end, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace isopath

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "isopath/core/error.h"
+#include "isopath/core/quiet_progress.h"
 #include "isopath/plan/run_plan.h"
 #include "support/test_meshes.h"
 
@@ -53,6 +54,23 @@ TEST_F(NestedPlan, AnAnnulusIsBlendedFromLoopToLoop) {
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_GE(result.gap.covered_fraction, 0.995);
+}
+
+TEST_F(NestedPlan, AnAnnulusOfUnevenWidthIsCutOpen) {
+  // 2 wide on one side of the hole, 10 on the other: levels from loop to loop would be five times as dense there
+  const TriangleMesh mesh = test::planar_cells(16, 8, [](int i, int j) { return i < 2 || i >= 6 || j < 2 || j >= 6; });
+  QuietProgress quiet(Progress::none());
+  const std::optional<TriangleMesh> opened = opened_annulus(mesh, 0.5, quiet);
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(nested_shape_of(*opened), NestedShape::disc);
+  EXPECT_NEAR(opened->area(), mesh.area(), 1e-9);
+  EXPECT_FALSE(opened_annulus(test::open_cylinder(24, 8, 5, 4), 0.5, quiet)) << "of even width";
+
+  const PlanResult result = plan(mesh, Pattern::spiral, BlendForm::least, 0.5);
+  EXPECT_EQ(result.figures.pieces, 1);
+  EXPECT_EQ(result.figures.lifts, 0);
+  EXPECT_LE(result.gap.max, 1.05);
+  EXPECT_LE(result.length_ratio, 1.2);
 }
 
 TEST_F(NestedPlan, MoreHolesGetATwoWayCurveAndAWarning) {

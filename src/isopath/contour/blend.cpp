@@ -133,9 +133,9 @@ class LeastBlend {
   /// How steeply what is raised falls off along the axis: steeper than the distance itself, or a single pull would
   /// reach as far as that rises.
   static constexpr double axis_fall = 1.5;
-  /// How far what is raised beyond pulls is smoothed, and how much lower that may leave it.
+  /// How far what is raised beyond pulls is smoothed, and how much lower that may leave it in either round.
   static constexpr double smoothing_in_spacings = 0.25;
-  static constexpr double most_smoothed_off = 0.2;
+  static constexpr double most_smoothed_off[] = {0.2, 0.1};
 
   /// The vertex farthest from the sources; of several as far, the one nearest to their middle.
   void find_roots() {
@@ -313,12 +313,15 @@ class LeastBlend {
       pull[v] = handed_down(v, own_pull(v));
       more[v] = std::max(0.0, raise_at(v) - pull[v]);
     }
-    const std::vector<double> smooth = diffused(
-        surface_laplacian(mesh_, progress_), more,
-        {.width = smoothing_in_spacings * spacing_, .steps = 2, .local = free, .conserve_volume = false}, progress_);
-    // ways may not fall below the level they lead over, which is half a spacing lower
-    for (Index v = 0; v < mesh_.n_vertices(); ++v)
-      pull[v] += std::max(smooth[v], more[v] - most_smoothed_off * spacing_);
+    const SurfaceLaplacian laplacian = surface_laplacian(mesh_, progress_);
+    const DiffusionOptions options{
+        .width = smoothing_in_spacings * spacing_, .steps = 2, .local = free, .conserve_volume = false};
+    for (const double most : most_smoothed_off) {
+      const std::vector<double> smooth = diffused(laplacian, more, options, progress_);
+      // ways may not fall below the level they lead over, which is half a spacing lower
+      for (Index v = 0; v < mesh_.n_vertices(); ++v) more[v] = std::max(smooth[v], more[v] - most * spacing_);
+    }
+    for (Index v = 0; v < mesh_.n_vertices(); ++v) pull[v] += more[v];
     return pull;
   }
 

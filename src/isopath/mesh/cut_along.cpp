@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/disjoint_sets.h"
 #include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
@@ -337,6 +338,29 @@ CutMesh cut_along(const TriangleMesh& mesh, std::span<const std::vector<SurfaceP
   Cutter cutter(mesh);
   for (const auto& line : lines) cutter.add_line(line);
   return cutter.run();
+}
+
+TriangleMesh opened_along(const TriangleMesh& mesh, std::span<const char> is_cut) {
+  // corners are numbered as the half-edges that leave them; those beside an edge that stays are one vertex
+  DisjointSets corners(static_cast<std::size_t>(mesh.n_halfedges()));
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
+    const Index twin = mesh.twin(h);
+    if (twin != no_index && !is_cut[mesh.edge_of(h)]) corners.join(h, TriangleMesh::next(twin));
+  }
+  TriangleSoup soup = mesh.soup();
+  std::vector<Index> vertex_of(mesh.n_halfedges(), no_index);
+  std::vector<char> taken(mesh.n_vertices(), 0);
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
+    Index& vertex = vertex_of[corners.root(h)];
+    const Index old = mesh.from(h);
+    if (vertex == no_index) {
+      vertex = taken[old] ? static_cast<Index>(soup.positions.size()) : old;
+      if (taken[old]) soup.positions.push_back(mesh.position(old));
+      taken[old] = 1;
+    }
+    soup.triangles[h / 3][h % 3] = vertex;
+  }
+  return TriangleMesh(std::move(soup));
 }
 
 }  // namespace isopath

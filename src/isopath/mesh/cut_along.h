@@ -21,4 +21,8 @@ struct CutMesh {
 /// Throws Error(internal) where consecutive points of a line share no face.
 CutMesh cut_along(const TriangleMesh& mesh, std::span<const std::vector<SurfacePoint>> lines);
 
+/// The surface cut open along some of its edges, which become boundary on both sides. Faces keep their numbers, and so
+/// does one vertex of each that becomes several; the others are appended.
+TriangleMesh opened_along(const TriangleMesh& mesh, std::span<const char> is_cut);
+
 }  // namespace isopath

@@ -8,19 +8,50 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/impact/finish_curve.h"
+#include "isopath/mesh/cut_along.h"
+#include "isopath/mesh/refine.h"
 
 namespace isopath {
 namespace {
 
+/// Above this length ratio, an annulus is rather cut open, which costs some levels along the cut.
+constexpr double most_length_ratio = 1.1;
+/// The longest edges, in spacings, of the mesh that this is judged on.
+constexpr double judged_in_spacings = 1;
+constexpr Index most_faces = 1000000;
+
+/// The distances from the two loops of an annulus.
+struct LoopFields {
+  ExactField outer;
+  ExactField inner;
+
+  LoopFields(const TriangleMesh& mesh, double spacing, Progress& progress)
+      : outer(from_loop(mesh, 0, spacing, progress)), inner(from_loop(mesh, 1, spacing, progress)) {}
+
+ private:
+  static ExactField from_loop(const TriangleMesh& mesh, Index loop, double spacing, Progress& progress) {
+    return ExactField::compute(mesh, boundary_source(mesh, loop), {.accuracy = 1e-4 * spacing}, progress);
+  }
+};
+
 /// Levels of the function between two loops so close that they keep the spacing all but everywhere.
-NestedField annulus_field(const TriangleMesh& mesh, double spacing, Progress& progress) {
-  const ExactFieldOptions options{.accuracy = 1e-4 * spacing};
-  const ExactField outer = ExactField::compute(mesh, boundary_source(mesh, 0), options, progress);
-  const ExactField inner = ExactField::compute(mesh, boundary_source(mesh, 1), options, progress);
-  NestedField nested{blend_between(outer, inner), spacing};
-  const int n = levels_to_keep(mesh, nested.values, spacing);
+NestedField annulus_field(const LoopFields& fields, double spacing) {
+  NestedField nested{blend_between(fields.outer, fields.inner), spacing};
+  const int n = levels_to_keep(fields.outer.mesh(), nested.values, spacing);
   for (double& value : nested.values) value *= n * spacing;
   return nested;
+}
+
+/// The length of all levels, times their spacing, over the area: the mean slope of the function (coarea formula).
+double length_ratio_of(const TriangleMesh& mesh, const std::vector<double>& values) {
+  double sum = 0;
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const Triangle& t = mesh.triangle(f);
+    const Vec3 ab = mesh.position(t[1]) - mesh.position(t[0]);
+    const Vec3 ac = mesh.position(t[2]) - mesh.position(t[0]);
+    sum += 0.5 * ((values[t[2]] - values[t[0]]) * ab - (values[t[1]] - values[t[0]]) * ac).norm();
+  }
+  return sum / mesh.area();
 }
 
 }  // namespace
@@ -43,6 +74,21 @@ NestedShape nested_shape_of(const TriangleMesh& mesh) {
   return NestedShape::disc;
 }
 
+std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress) {
+  const TriangleMesh even = split_long_edges(mesh, judged_in_spacings * spacing, most_faces).mesh;
+  const LoopFields fields(even, spacing, progress);
+  if (length_ratio_of(even, annulus_field(fields, spacing).values) <= most_length_ratio) return std::nullopt;
+  Index narrowest = no_index;
+  for (const Index h : even.boundary_loops()[1]) {
+    const Index v = even.from(h);
+    if (narrowest == no_index || fields.outer.vertex_distances()[v] < fields.outer.vertex_distances()[narrowest])
+      narrowest = v;
+  }
+  const std::vector<SurfacePoint> lines[] = {fields.outer.shortest_path(point_at_vertex(even, narrowest))};
+  const CutMesh cut = cut_along(even, lines);
+  return opened_along(cut.refined.mesh, cut.is_cut);
+}
+
 bool wants_nested_levels(const Job& job) { return job.blend || job.pattern == Pattern::double_spiral; }
 
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress) {
@@ -50,7 +96,7 @@ NestedField nested_field(const Job& job, const ExactField& distance, double spac
   const TriangleMesh& mesh = distance.mesh();
   if (job.blend) {
     const NestedShape shape = nested_shape_of(mesh);
-    if (shape == NestedShape::annulus) return annulus_field(mesh, spacing, progress);
+    if (shape == NestedShape::annulus) return annulus_field(LoopFields(mesh, spacing, progress), spacing);
     if (shape == NestedShape::other) {
       throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
                   {.advice = "take the pattern two-way, which needs none, or part it first"});

@@ -18,6 +18,11 @@ enum class NestedShape {
 };
 NestedShape nested_shape_of(const TriangleMesh& mesh);
 
+/// An annulus whose levels from loop to loop would be wasteful, as its width is uneven: cut open along the shortest way
+/// between its loops where it is narrowest, so that it is a disc. None where the levels of an annulus serve, which have
+/// no ends. `spacing` is that of the levels, mm. Throws Error(cancelled) on request.
+std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress);
+
 /// True when the job's pattern or blend asks for nested closed levels.
 bool wants_nested_levels(const Job& job);
 

@@ -205,12 +205,23 @@ Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
   }
   const double spacing = result.spacing;
   TriangleMesh& mesh = result.part.mesh;
+  std::optional<IntrinsicGeometry> in_space;
+  if (result.job.blend == BlendForm::least && nested_shape_of(mesh) == NestedShape::annulus) {
+    if (auto opened = opened_annulus(mesh, spacing, progress)) {
+      result.warnings.push_back(
+          "the annulus is of uneven width: levels from loop to loop would be wasteful, so it was planned as if cut "
+          "open "
+          "where it is narrowest");
+      field.function.reset();
+      mesh = *std::move(opened);
+      field = field_of(result, in_space, progress);
+    }
+  }
   TriangleMesh fine = refine_for_blend(mesh, *field.function, spacing, progress);
   NestedField nested;
   for (int round = 0; round < 2; ++round) {
     field.function.reset();
     mesh = std::move(fine);
-    std::optional<IntrinsicGeometry> in_space;
     field = field_of(result, in_space, progress);
     nested = nested_field(result.job, static_cast<const ExactField&>(*field.function), spacing, progress);
     fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
