@@ -79,8 +79,11 @@ blended notch notch --spacing 5 --pattern spiral --blend
 blended disc disc --spacing 4 --pattern double-spiral --blend
 blended square square --spacing 5 --pattern double-spiral --blend
 blended dumbbell dumbbell --spacing 5 --pattern spiral --blend
+blended eccentric eccentric --spacing 4 --pattern spiral --blend
+blended slab slab --spacing 5 --pattern spiral --blend
 python3 tools/path_picture.py docs/img/blend_forms.svg "$out"/l_{distance,paper,least}/impact.csv
 python3 tools/path_picture.py docs/img/blend_spirals.svg "$out"/{star,notch}/impact.csv
 python3 tools/path_picture.py docs/img/blend_neck.svg "$out"/dumbbell/impact.csv
+python3 tools/path_picture.py docs/img/blend_annuli.svg "$out"/{eccentric,slab}/impact.csv
 python3 tools/path_picture.py docs/img/double_spirals.svg "$out"/{disc,square}/impact.csv
 ls docs/img/blend_*.svg docs/img/double_spirals.svg

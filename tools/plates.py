@@ -46,6 +46,19 @@ def fan(name, outline, rings, height=lambda x, y: 0):
     write(name, points, triangles)
 
 
+def ring(name, outer, inner, rings):
+    """What lies between two closed outlines of as many points."""
+    n = len(outer)
+    points = [((1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1], 0)
+              for t in (r / rings for r in range(rings + 1)) for a, b in zip(outer, inner)]
+    triangles = []
+    for r in range(rings):
+        for k in range(n):
+            a, b = r * n + k, r * n + (k + 1) % n
+            triangles += [(a, b, b + n), (a, b + n, a + n)]
+    write(name, points, triangles)
+
+
 def star(tips, outer, inner, parts):
     corners = [(r * math.cos(math.pi * k / tips), r * math.sin(math.pi * k / tips))
                for k, r in enumerate([outer, inner] * tips)]
@@ -70,3 +83,9 @@ cells("bump", 60, 60, 2, height=lambda x, y: 35 * math.exp(-((x - 15) ** 2 + (y 
 fan("disc", [(50 * math.cos(t), 50 * math.sin(t)) for t in turn[::2]], 12)
 fan("star", star(5, 60, 25, 12), 10)
 fan("notch", [notched(t) for t in turn], 30, lambda x, y: 9 * math.sin(x / 14) * math.cos(y / 14))
+cells("frame", 24, 24, 5, lambda i, j: not (8 <= i < 16 and 8 <= j < 16))
+cells("slab", 30, 12, 5, lambda i, j: not (6 <= i < 10 and 4 <= j < 8))
+ring("washer", [(60 * math.cos(t), 60 * math.sin(t)) for t in turn[::2]],
+     [(25 * math.cos(t), 25 * math.sin(t)) for t in turn[::2]], 12)
+ring("eccentric", [(60 * math.cos(t), 60 * math.sin(t)) for t in turn[::2]],
+     [(20 + 25 * math.cos(t), 25 * math.sin(t)) for t in turn[::2]], 14)
