@@ -111,7 +111,7 @@ class Planner {
 
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.
   void choose() {
-    const double spacing = (options_.pattern == Pattern::two_way ? 1 : pass_allowance) * options_.spacing;
+    const double spacing = (keeps_spacing() ? 1 : pass_allowance) * options_.spacing;
     passes_ = choose_passes(mesh_, function_, spacing, progress_);
     if (options_.pattern != Pattern::two_way || passes_.spacing > (1 - 1e-3) * spacing) return;
     const auto length = [&](const Passes& passes) {
@@ -121,6 +121,13 @@ class Planner {
     };
     Passes exact = choose_passes(mesh_, function_, spacing, progress_, PassLayout::exact);
     if (length(exact) < length(passes_)) passes_ = std::move(exact);
+  }
+
+  /// Where gaps are closed down to `widest_gap` every corner needs its bump, and closer passes spare none of them. In a
+  /// metric for a cusp height they keep that below what is asked for.
+  bool keeps_spacing() const {
+    const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
+    return options_.pattern == Pattern::two_way || (options_.close_gaps && !as_they_are && !options_.metric);
   }
 
   void add_runs(CurveAssembly& assembly) {
