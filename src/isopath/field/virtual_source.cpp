@@ -25,8 +25,6 @@ constexpr float bucket_step = 1;
 // What a vertex is up to; one that waits in the queue is not settled.
 constexpr std::uint32_t is_settled = 1;   ///< has handed its distance on
 constexpr std::uint32_t was_settled = 2;  ///< has done so before, with a longer one
-constexpr std::uint32_t is_awaited = 4;   ///< some way past it was not taken as long as its distance was so large
-constexpr std::uint32_t looks_again = 8;  ///< waits in the queue only because a neighbour that it awaited came nearer
 
 /// An edge whose ends a front has reached: the vertex behind, and the one ahead that it may reach next, in the frame of
 /// the edge.
@@ -58,26 +56,24 @@ float over_two_edges(const Door& door, const EdgeFront& direct, float crossing, 
   return at >= 0 && at <= length * way.y ? front.distance_of(ahead, way) : distance;
 }
 
-enum class Step { none, waits, done };
-
-/// Takes the front through an edge to the vertex ahead, if it is nearer that way than `known`.
-[[gnu::always_inline]] inline Step step_through(const Door& door, float known, Arrival& arrival) {
+/// Takes the front through an edge to the vertex ahead; false where that is no nearer than `known`.
+[[gnu::always_inline]] inline bool step_through(const Door& door, float known, Arrival& arrival) {
   const EdgeFront front = fit_front(door.tail, door.head, door.length);
   const FlatPoint ray = front.ray_to(door.front);
   const float at = cross(door.front, ray);  // times ray.y: where the ray crosses the edge
   const float width = door.length * ray.y;
   const float slack = grazing * width;
   const float wanted = known * (1 - single_rounding);
-  if (!(at >= -slack && at <= width + slack)) return Step::none;
+  if (!(at >= -slack && at <= width + slack)) return false;
   float distance = front.distance_of(door.front, ray);
-  if (!(distance < wanted)) return Step::none;
+  if (!(distance < wanted)) return false;
   const float expected = front.distance_of(door.back, front.ray_to(door.back));
-  if (!(door.behind.distance <= expected - met * door.back.y)) return Step::waits;
+  if (!(door.behind.distance <= expected - met * door.back.y)) return false;
   if (expected > 0) distance = over_two_edges(door, front, at / ray.y, distance);
-  if (!(distance < wanted)) return Step::none;
+  if (!(distance < wanted)) return false;
   const Arrival& nearer = 2 * at < width ? door.tail : door.head;
   arrival = {distance, nearer.bent, nearer.source, 0};
-  return Step::done;
+  return true;
 }
 
 class Propagation {
@@ -101,7 +97,6 @@ class Propagation {
   void settle(std::uint32_t vertex);
   void step_through_faces(const Arrival& here, const FanLayout::Fan& fan);
   void step_through_face(const Arrival& here, const FanLayout::Fan& fan, std::size_t i, bool to_left);
-  void wake(const FanLayout::Fan& fan);
   void hand_over(std::uint32_t vertex, const Arrival& arrival);
   void look_ahead() const;
 
@@ -116,7 +111,7 @@ class Propagation {
   Arrival& held = arrivals_[vertex];
   if (!(arrival.distance < held.distance)) return;  // a vertex may be twice in a fan
   const std::uint32_t revised = (held.state & is_settled) != 0 ? was_settled : 0;
-  held = {arrival.distance, arrival.bent, arrival.source, revised | (held.state & (was_settled | is_awaited))};
+  held = {arrival.distance, arrival.bent, arrival.source, revised | (held.state & was_settled)};
   queue_.push(arrival.distance, vertex);
 }
 
@@ -125,9 +120,7 @@ class Propagation {
 void Propagation::settle(std::uint32_t vertex) {
   Arrival& own = arrivals_[vertex];
   if ((own.state & is_settled) != 0) return;
-  const bool came_nearer = (own.state & looks_again) == 0;
-  const bool look_again = came_nearer && (own.state & is_awaited) != 0;
-  own.state = is_settled | (own.state & (came_nearer ? was_settled : was_settled | is_awaited));
+  own.state |= is_settled;
   const FanLayout::Fan fan = fans_.fan(vertex);
   const std::span<const FanSpoke> spokes = fan.spokes;
   const std::size_t n = spokes.size();
@@ -141,7 +134,6 @@ void Propagation::settle(std::uint32_t vertex) {
     const float distance = here.distance + spokes[i].length;
     if (distance < around_[i].distance * (1 - single_rounding)) hand_over(spokes[i].end, {distance, bent, source, 0});
   }
-  if (look_again) wake(fan);
 }
 
 void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& fan) {
@@ -179,24 +171,9 @@ void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& 
                   {back_length * back.cosine, -back_length * back.sine},
                   {front_length * face.cosine, front_length * face.sine}};
   Arrival arrival;
-  const Step step = step_through(door, around_[ahead].distance, arrival);
-  if (step == Step::none) return;
-  if (step == Step::done) {
-    around_[ahead] = arrival;
-    hand_over(spokes[ahead].end, arrival);
-  } else {
-    arrivals_[spokes[behind].end].state |= is_awaited;
-  }
-}
-
-/// Has the neighbours of a vertex look again whether there is a way past it.
-void Propagation::wake(const FanLayout::Fan& fan) {
-  for (const FanSpoke& spoke : fan.spokes) {
-    Arrival& arrival = arrivals_[spoke.end];
-    if ((arrival.state & is_settled) == 0) continue;
-    arrival.state = looks_again | was_settled | (arrival.state & is_awaited);
-    queue_.push(arrival.distance, spoke.end);
-  }
+  if (!step_through(door, around_[ahead].distance, arrival)) return;
+  around_[ahead] = arrival;
+  hand_over(spokes[ahead].end, arrival);
 }
 
 void Propagation::start_at(std::uint32_t vertex, double distance, float bent, std::uint32_t source) {

@@ -29,10 +29,11 @@ class VirtualSourceSolver {
 /// that came. Through an edge whose ends are reached goes the front that fits both distances: a circle about a virtual
 /// source, or a straight line where it began at segments, so that boundaries and polylines are true lines.
 ///
-/// Never longer than the way along edges, up to rounding. Exact up to rounding from a point on a convex flat part, or
-/// one that unfolds into it, as long as fronts do not meet. Elsewhere distances err to either side, and there is no
-/// bound: the mean relative error is 0.002 % to 0.25 %, the largest a few percent, where fronts meet, in the shadow of
-/// reflex corners and beside a ragged source: see docs/distance-fields.md. `checked_distances` asks for a bound.
+/// Never longer than the way along edges, up to rounding. Almost always exact up to rounding from a point on a convex
+/// flat part, or one that unfolds into it, as long as fronts do not meet. Elsewhere distances err to either side, and
+/// there is no bound: the mean relative error is 0.002 % to 0.25 %, the largest a few percent, where fronts meet, in
+/// the shadow of reflex corners and beside a ragged source: see docs/distance-fields.md. `checked_distances` asks for a
+/// bound.
 ///
 /// Works in single precision on lengths relative to the mean edge: expect relative rounding errors of 1e-6, on meshes
 /// whose edges are of very different lengths of 1e-5. Takes O(n) time for n vertices at edges of about one length.
