@@ -261,6 +261,14 @@ TEST(VirtualSource, IsTheSameFromRunToRun) {
             virtual_source_distances(mesh, boundary_source(mesh)));
 }
 
+TEST(VirtualSource, LeavesUnusedVerticesUnreached) {
+  TriangleSoup soup = tetrahedron(1).soup();
+  soup.positions.push_back(Vec3(5, 5, 5));
+  const TriangleMesh mesh(std::move(soup));
+  const auto distance = virtual_source_distances(mesh, vertex_source(mesh, 0));
+  EXPECT_EQ(distance, (std::vector<double>{0, 1, 1, 1, infinity}));
+}
+
 class Cancelled : public Progress {
   bool cancelled() const override { return true; }
 };

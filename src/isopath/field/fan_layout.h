@@ -32,12 +32,12 @@ class FanLayout {
   Fan fan(std::uint32_t vertex) const {
     const Head& head = heads_[vertex];
     const std::uint32_t first = head.first;
-    return {{&spokes_[first], heads_[vertex + 1].first - first}, head.closed, head.bends};
+    return {{spokes_.data() + first, heads_[vertex + 1].first - first}, head.closed, head.bends};
   }
   bool bends(std::uint32_t vertex) const { return heads_[vertex].bends; }
   /// Fetches a fan into the cache ahead of its use.
   void prefetch(std::uint32_t vertex) const {
-    const FanSpoke* first = &spokes_[heads_[vertex].first];
+    const FanSpoke* first = spokes_.data() + heads_[vertex].first;
     __builtin_prefetch(first);
     __builtin_prefetch(first + 4);
     __builtin_prefetch(first + 6);
