@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/exact_field_data.h"
 #include "isopath/field/field_invariants.h"
 #include "support/random_sources.h"
 #include "support/test_meshes.h"
@@ -65,25 +67,6 @@ TEST(FieldInvariants, SoundWindowsPass) {
   EXPECT_EQ(sample.complaint(), "");
 }
 
-TEST(FieldInvariants, HairsArePassedOverOnRequestOnly) {
-  Sample sample;
-  Window hair;
-  hair.begin = 3;
-  hair.end = 3 + 1e-7;
-  hair.offset = 10;
-  hair.root = 0;
-  sample.windows[2].begin = hair.end;
-  sample.windows.insert(sample.windows.begin() + 2, hair);
-  EXPECT_NO_THROW(verify_edge_windows(sample.edge, sample.windows, {.widest_hair = 1e-6}));
-  EXPECT_THROW(verify_edge_windows(sample.edge, sample.windows, {.widest_hair = 1e-8}), Error);
-  EXPECT_THROW(verify_edge_windows(sample.edge, sample.windows), Error);
-  for (const std::size_t damaged : {1, 3}) {  // what is beside it must still agree
-    Sample other = sample;
-    other.windows[damaged].offset += 1e-5;
-    EXPECT_THROW(verify_edge_windows(other.edge, other.windows, {.widest_hair = 1e-6}), Error);
-  }
-}
-
 struct Fault {
   std::string word;  ///< in the complaint
   std::function<void(Sample&)> make;
@@ -122,6 +105,36 @@ TEST(FieldInvariants, UnreachedEdgesHaveNoWindows) {
   sample.windows.clear();
   sample.edge.distance_at_start = sample.edge.distance_at_end = infinity;
   EXPECT_EQ(sample.complaint(), "");
+}
+
+TEST(FieldInvariants, OneWrongWindowOfAFieldIsNoticedWithinItsReachOnly) {
+  const TriangleMesh mesh = wavy_sheet(12, 100, 10, 0.1, 0.08, 3);
+  SourceSet sources;
+  sources.add_vertex(mesh, 0);
+  for (const double stop : {infinity, 60.0}) {
+    const ExactField field = ExactField::compute(mesh, sources, {.stop_distance = stop});
+    field.verify();
+    int noticed = 0;
+    int passed_over = 0;
+    for (Index e = 0; e < mesh.n_edges(); ++e) {
+      ExactFieldData damaged = field.data();
+      if (damaged.first_window[e] == damaged.first_window[e + 1]) continue;
+      damaged.windows[damaged.first_window[e]].offset += 1e-3;
+      const Index h = mesh.halfedge_of(e);
+      const double nearer = std::min(field.value_at_vertex(mesh.from(h)), field.value_at_vertex(mesh.to(h)));
+      bool notices = false;
+      try {
+        verify_windows(damaged);
+      } catch (const Error&) {
+        notices = true;
+      }
+      EXPECT_FALSE(notices && nearer > stop) << "edge " << e;
+      EXPECT_TRUE(notices || nearer + 3 * mesh.edge_length(e) >= stop) << "edge " << e;
+      ++(notices ? noticed : passed_over);
+    }
+    EXPECT_GT(noticed, 20);
+    EXPECT_EQ(passed_over > 0, stop < infinity);
+  }
 }
 
 TEST(FieldInvariants, ExactFieldsKeepThem) {

@@ -161,7 +161,12 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   data->distance = propagation.vertex_distances();
   data->root = propagation.vertex_roots();
   data->fans = std::move(propagation.fans());
-  return ExactField(std::move(data));
+  data->reach = options.stop_distance;
+  ExactField field(std::move(data));
+#ifndef NDEBUG
+  field.verify();
+#endif
+  return field;
 }
 
 const TriangleMesh& ExactField::mesh() const { return data_->mesh; }

@@ -68,9 +68,9 @@ class ExactField final : public SurfaceFunction {
 
   std::size_t windows_kept() const;
   std::size_t windows_propagated() const;
-  /// Throws Error(internal) where the windows contradict each other: see verify_windows (field_invariants.h). For
-  /// fields without a stop distance and without merging (ExactFieldOptions).
-  void verify(double widest_hair = 0) const;
+  /// Throws Error(internal) where the windows contradict each other: see verify_windows (field_invariants.h). Builds
+  /// with assertions (without NDEBUG) verify every field once it is computed.
+  void verify() const;
 
   double value_at_vertex(Index vertex) const override;
   double value(const SurfacePoint& point) const override;

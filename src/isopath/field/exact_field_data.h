@@ -68,6 +68,7 @@ struct ExactFieldData {
   std::vector<SourceBlock> source_blocks;  ///< face by face
   std::vector<std::size_t> first_block;
   std::size_t propagated = 0;
+  double reach = infinity;  ///< beyond it windows may be missing
 };
 
 /// The way from a point of a face back towards the sources: straight to a source inside the face, to a corner, or

@@ -52,7 +52,7 @@ void verify_window(const EdgeOfField& edge, std::size_t i, const Window& w) {
 
 }  // namespace
 
-void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> windows, const InvariantOptions& options) {
+void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> windows) {
   const bool reached = edge.distance_at_start < infinity || edge.distance_at_end < infinity;
   if (windows.empty()) {
     if (reached && edge.length > same_place(edge))
@@ -64,46 +64,45 @@ void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> window
     fail(edge, i, found > expected ? "windows leave a gap on an edge" : "windows overlap on an edge",
          fmt::format("{:.17g} to {:.17g} of {:.17g} mm", expected, found, edge.length));
   };
-  // The distance so far, where it is known, and what it may be off.
-  double place = 0;
+  // The distance so far, and what it may be off.
   double distance = edge.distance_at_start;
   double error = windows[0].error;
-  const double hair = options.widest_hair * edge.length;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const Window& w = windows[i];
     verify_window(edge, i, w);
     expect_same_place(i, i == 0 ? 0 : windows[i - 1].end, w.begin);
-    if (w.end - w.begin < hair) continue;
     expect_same_distance(edge, i, i == 0 ? "at a vertex" : "where they meet", distance, w.distance(w.begin),
-                         error + w.error + hair + (w.begin - place));
-    place = w.end;
+                         error + w.error);
     distance = w.distance(w.end);
     error = w.error;
   }
   expect_same_place(windows.size() - 1, windows.back().end, edge.length);
-  expect_same_distance(edge, windows.size() - 1, "at a vertex", distance, edge.distance_at_end,
-                       2 * error + hair + (edge.length - place));
+  expect_same_distance(edge, windows.size() - 1, "at a vertex", distance, edge.distance_at_end, 2 * error);
 }
 
-void verify_windows(const ExactFieldData& data, const InvariantOptions& options) {
+void verify_windows(const ExactFieldData& data) {
   const TriangleMesh& mesh = data.mesh;
   std::vector<Window> windows;
   for (Index e = 0; e < mesh.n_edges(); ++e) {
     const Index h = mesh.halfedge_of(e);
+    // Where both ends are reached, all points between are as near as the farther end and the edge together.
+    const double start = data.distance[mesh.from(h)];
+    const double end = data.distance[mesh.to(h)];
+    if (data.reach < infinity && !(std::max(start, end) + data.geometry.length(h) <= data.reach)) continue;
     windows.clear();
     data.for_each_window(e, [&](const Window& w) { windows.push_back(w); });
     verify_edge_windows({.edge = e,
                          .halfedge = h,
                          .twin = mesh.twin(h),
                          .length = data.geometry.length(h),
-                         .distance_at_start = data.distance[mesh.from(h)],
-                         .distance_at_end = data.distance[mesh.to(h)],
+                         .distance_at_start = start,
+                         .distance_at_end = end,
                          .size = data.geometry.size(),
                          .n_roots = static_cast<Index>(data.sources.elements().size())},
-                        windows, options);
+                        windows);
   }
 }
 
-void ExactField::verify(double widest_hair) const { verify_windows(*data_, {.widest_hair = widest_hair}); }
+void ExactField::verify() const { verify_windows(*data_); }
 
 }  // namespace isopath

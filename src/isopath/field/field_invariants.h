@@ -21,13 +21,6 @@ struct EdgeOfField {
   Index n_roots = 0;  ///< number of source elements
 };
 
-struct InvariantOptions {
-  /// Windows narrower than this part of the edge are passed over, and the windows beside them compared with each
-  /// other within this part of the edge: rounding may open a crack between two fronts, which then holds too long a
-  /// distance. 0 allows none.
-  double widest_hair = 0;
-};
-
 /// Throws Error(internal), with the edge and the window in it, unless
 /// - the windows tile the edge from end to end, without gap or overlap, or there are none and both ends are unreached;
 /// - each window has finite distances, none below zero, and the root of a source element;
@@ -36,10 +29,9 @@ struct InvariantOptions {
 ///
 /// Positions are compared within two snap widths, distances within these, 1e-9 relative and 1e-11 of the model
 /// (and what merging windows may have changed): see docs/robustness.md.
-void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> windows,
-                         const InvariantOptions& options = {});
+void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> windows);
 
-/// The same for all edges of a field that was computed without a stop distance and without merging.
-void verify_windows(const ExactFieldData& data, const InvariantOptions& options = {});
+/// The same for all edges that lie within the stop distance of the field.
+void verify_windows(const ExactFieldData& data);
 
 }  // namespace isopath
