@@ -238,6 +238,21 @@ TEST(isolines, find_the_corner_on_a_ridge) {
   }
 }
 
+TEST(isolines, along_a_ridge_need_few_points) {
+  // On the ridge between two points the level runs close to its own other side, which takes deep divisions to see.
+  const TriangleMesh mesh = square(1, 10);
+  const PointDistance distance(mesh, {Vec3(6, 2, 0), Vec3(8, 2.3, 0)});
+  IsolineOptions options;
+  options.chord_tolerance = 1e-3;
+  const double r = 0.5 * Vec3(2, 0.3, 0).norm() + 1e-6;
+  const auto contours = isolines(mesh, distance, std::vector<double>{r}, options);
+  expect_valid(mesh, distance, contours);
+  std::size_t points = 0;
+  for (const Contour& contour : contours) points += contour.points.size();
+  // a circle of radius r with chords of that tolerance has 2 pi / sqrt(8 tolerance / r) of them; halving takes more
+  EXPECT_LE(static_cast<double>(points), 2 * 2.5 * 2 * pi * std::sqrt(r / 8e-3) + 20);
+}
+
 TEST(isolines, skip_unreached_faces) {
   const TriangleMesh mesh = square(4);
   std::vector<double> values;

@@ -11,6 +11,8 @@
 
 #include "field/field_from.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/exact_field_data.h"
+#include "isopath/field/part_bound.h"
 #include "support/random_sources.h"
 #include "support/slow_exact.h"
 #include "support/test_meshes.h"
@@ -134,6 +136,64 @@ TEST(ExactFieldProperties, AUnionIsTheSmallerOfItsParts) {
       }
     }
   });
+}
+
+/// So many points, and walks over the faces, that in every face many windows or sources compete.
+SourceSet crowded_sources(Rng& rng, const TriangleMesh& mesh) {
+  SourceSet sources;
+  for (int k = 0; k < 60; ++k) sources.add_point(random_supported_point(rng, mesh));
+  for (int k = 0; k < 10; ++k) sources.add_polyline(mesh, random_polyline(rng, mesh, 12), false);
+  return sources;
+}
+
+TEST(ExactFieldProperties, ManyQuestionsGetTheSameAnswers) {
+  std::size_t divided = 0;
+  on_random_meshes(0, 60, [&](Rng& rng, const TriangleMesh& mesh) {
+    const SourceSet sources = crowded_sources(rng, mesh);
+    const ExactField plain = ExactField::compute(mesh, sources);
+    const ExactField sorted = ExactField::compute(mesh, sources, {.many_questions = true});
+    for (int k = 0; k < 200; ++k) {
+      const SurfacePoint p = random_supported_point(rng, mesh);
+      EXPECT_EQ(sorted.value(p), plain.value(p));
+      EXPECT_EQ(sorted.nearest(p).distance, plain.nearest(p).distance);
+    }
+    for (Index f = 0; f < mesh.n_faces(); ++f) {
+      if (sorted.data().trees.part_at(f, sorted.geometry().in_frame(3 * f, Vec3::Constant(1.0 / 3)))) ++divided;
+    }
+  });
+  EXPECT_GT(divided, 60U);
+}
+
+TEST(ExactFieldProperties, NoDistanceInAPartOfAFaceExceedsItsBound) {
+  on_random_meshes(0, 60, [](Rng& rng, const TriangleMesh& mesh) {
+    const ExactField field = ExactField::compute(mesh, crowded_sources(rng, mesh), {.many_questions = true});
+    for (int k = 0; k < 100; ++k) {
+      const SurfacePoint centre = random_surface_point(rng, mesh);
+      FacePart part = FacePart::whole(centre.face);
+      const double size = random_real(rng, 0, 1);
+      for (Vec3& corner : part.corner) corner = centre.barycentric + size * (corner - centre.barycentric);
+      const double bound = bound_in_part(field.data(), part, best_way_back(field.data(), part.face, part.centre()));
+      for (int i = 0; i < 20; ++i) {
+        const Vec3 at = random_surface_point(rng, mesh).barycentric;
+        const Vec3 place = part.corner[0] * at[0] + part.corner[1] * at[1] + part.corner[2] * at[2];
+        EXPECT_LE(field.value({part.face, place}), bound + judge_tolerance(mesh));
+      }
+    }
+  });
+}
+
+TEST(ExactFieldProperties, ABoundBetweenParallelPassesIsHalfTheirDistance) {
+  const TriangleMesh mesh = planar_grid(1, 1, 10, 10);
+  SourceSet sources;
+  for (const double x : {3.0, 4.0}) {
+    const SurfacePoint ends[2] = {{0, Vec3(1 - 0.1 * x, 0.1 * x, 0)}, {0, Vec3(1 - 0.1 * x, 0, 0.1 * x)}};
+    sources.add_polyline(mesh, ends, false);
+  }
+  const ExactField field = ExactField::compute(mesh, sources);
+  const auto at = [](double x, double y) { return Vec3(1 - 0.1 * x, 0.1 * (x - y), 0.1 * y); };
+  const FacePart part{.face = 0, .corner = {at(3.1, 1), at(3.9, 1), at(3.6, 2)}};
+  const double bound = bound_in_part(field.data(), part, best_way_back(field.data(), 0, part.centre()));
+  EXPECT_NEAR(bound, 0.5, 1e-12);
 }
 
 TEST(ExactFieldProperties, TheNearestRootIsAsFarAsTheDistance) {

@@ -14,6 +14,8 @@ namespace {
 constexpr int deepest_chord = 24;
 // A level set that runs along an inner edge is searched at 2^14 points, which bounds the time it can take.
 constexpr int deepest_division = 14;
+// What thinning takes of the chord tolerance.
+constexpr double thinning_over_chord = 0.25;
 
 }  // namespace
 
@@ -115,8 +117,43 @@ void FaceCutter::cut(Index level, double level_value, std::span<const Event> eve
   }
 }
 
-/// Appends one piece: the chain's inner nodes, and between them what the chord tolerance asks for.
-void FaceCutter::emit(Index level, Index from, Index to, const std::vector<Vec3>& chain, Output& out) const {
+/// Leaves out inner nodes of a chain that lie between others up to a small part of the chord tolerance: dividing a face
+/// finely, to tell what is connected, leaves many of them. Keeps what Ramer (1972) and Douglas & Peucker (1973) do.
+void FaceCutter::thin(std::vector<Vec3>& chain) const {
+  const double most = thinning_over_chord * chord_tolerance_;
+  std::vector<char> keep(chain.size(), 0);
+  keep.front() = keep.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> stretches{{0, chain.size() - 1}};
+  while (!stretches.empty()) {
+    const auto [first, last] = stretches.back();
+    stretches.pop_back();
+    const Vec2 start = plane(chain[first]);
+    const Vec2 way = plane(chain[last]) - start;
+    double farthest = most;
+    std::size_t middle = first;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const Vec2 p = plane(chain[i]) - start;
+      const double t = way.squaredNorm() > 0 ? std::clamp(p.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
+      const double distance = (p - t * way).norm();
+      if (distance <= farthest) continue;
+      farthest = distance;
+      middle = i;
+    }
+    if (middle == first) continue;
+    keep[middle] = 1;
+    stretches.emplace_back(first, middle);
+    stretches.emplace_back(middle, last);
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    if (keep[i]) chain[kept++] = chain[i];
+  }
+  chain.resize(kept);
+}
+
+/// Appends one piece: inner nodes of the chain, and between them what the chord tolerance asks for.
+void FaceCutter::emit(Index level, Index from, Index to, std::vector<Vec3>& chain, Output& out) const {
+  if (chain.size() > 2) thin(chain);
   const auto first = out.points.size();
   if (from == no_index) out.points.push_back({face_, chain.front()});
   const double same = mesh_.tolerance().length;

@@ -60,7 +60,8 @@ class FaceCutter {
   void divide(const Corners& corners, const Sides& sides, int depth);
   void split(const Corners& corners, const Sides& sides, int depth);
   void link(const Corners& corners, const Sides& sides);
-  void emit(Index level, Index from, Index to, const std::vector<Vec3>& chain, Output& out) const;
+  void thin(std::vector<Vec3>& chain) const;
+  void emit(Index level, Index from, Index to, std::vector<Vec3>& chain, Output& out) const;
   void refine(const Vec3& a, const Vec3& b, int depth, std::vector<SurfacePoint>& points) const;
   bool project(const Vec3& from, double g, const Vec3& direction, Vec3& found) const;
 

@@ -104,6 +104,10 @@ MergeLimits merge_limits(const TriangleMesh& mesh, const IntrinsicGeometry& geom
                          const ExactFieldOptions& options, Progress& progress) {
   MergeLimits limits{.accuracy = options.accuracy, .size = geometry.size()};
   if (options.accuracy == 0) return limits;
+  if (options.expected_reach > 0) {
+    limits.reach = std::min(options.stop_distance, options.expected_reach);
+    return limits;
+  }
   double farthest = 0;
   for (const double d : graph_distances(mesh, sources, {}, progress)) {
     if (d < infinity) farthest = std::max(farthest, d);
@@ -161,6 +165,7 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   data->distance = propagation.vertex_distances();
   data->root = propagation.vertex_roots();
   data->fans = std::move(propagation.fans());
+  if (options.many_questions) data->trees = FaceTrees(*data, progress);
   data->reach = options.stop_distance;
   ExactField field(std::move(data));
 #ifndef NDEBUG

@@ -21,6 +21,12 @@ struct ExactFieldOptions {
   /// equally far, roots are then only nearest within twice this; values on the two sides of an edge may differ by as
   /// much.
   double accuracy = 0;
+  /// About how far the farthest point is from the source, where the caller knows; 0 where it is to be found out. Bounds
+  /// hold in any case: it tells how to hand out the accuracy.
+  double expected_reach = 0;
+  /// Faces that many windows or sources concern are sorted (face_trees.h), so that distances of points in them are
+  /// found quickly. Takes about as long as some questions for each window, and changes no distance.
+  bool many_questions = false;
 
   void validate() const;  ///< throws Error(bad_usage)
 };

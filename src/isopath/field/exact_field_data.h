@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/field/face_trees.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/list_propagation.h"
 #include "isopath/field/source.h"
@@ -67,6 +68,7 @@ struct ExactFieldData {
   std::vector<std::size_t> first_source;
   std::vector<SourceBlock> source_blocks;  ///< face by face
   std::vector<std::size_t> first_block;
+  FaceTrees trees;  ///< empty unless many questions are expected
   std::size_t propagated = 0;
   double reach = infinity;  ///< beyond it windows may be missing
 };
@@ -82,6 +84,7 @@ struct WayBack {
   double x = 0;                 ///< on the half-edge, or fraction along the source element
   Vec2 towards = Vec2::Zero();  ///< to the unfolded source, in the frame of half-edge 3·face
   bool straight = false;        ///< a front of parallel rays: of `towards` only the direction means something
+  std::size_t index = 0;        ///< in ExactFieldData: of the window that it goes by, or of the placed source
 };
 
 /// Edges of a face that a way back must not go through, by the corner index of their tail.

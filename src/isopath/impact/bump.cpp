@@ -50,10 +50,13 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + t * side - p).norm();
 }
 
+/// What is longer than this many times the straight way is not counted as a way over an edge.
+constexpr double most_factor = 2;
+
 /// 1 / cos(θ/2): over an edge of angle θ the way on the surface is at most so many times as long as the straight one.
 double most_over_straight(const TriangleMesh& mesh, Index face, Index other) {
   const double cos_of_half = std::sqrt(std::max(0.0, 0.5 * (1 + mesh.face_normal(face).dot(mesh.face_normal(other)))));
-  return 1 / std::max(cos_of_half, 0.5);
+  return 1 / std::max(cos_of_half, 1 / most_factor);
 }
 
 class BumpBuilder {
@@ -288,6 +291,7 @@ class BumpBuilder {
       double straight = infinity;
       for (std::size_t i = 1; i < way.size(); ++i)
         straight = std::min(straight, distance_to_segment(cell.position, way[i - 1], way[i]));
+      if (cell.at.face == face || straight > limit_ || most_factor * straight <= limit_) return straight > limit_;
       return straight * most_over_straight(mesh_, face, cell.at.face) > limit_;
     }));
   }

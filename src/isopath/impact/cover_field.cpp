@@ -43,6 +43,11 @@ CoverSource cover_source(const TriangleMesh& mesh, const ImpactCurve& curve, con
   return source;
 }
 
+/// Most of the surface is within half a spacing, and questions are asked all over it.
+ExactFieldOptions cover_options(double spacing) {
+  return {.accuracy = cover_accuracy * spacing, .expected_reach = 0.5 * spacing, .many_questions = true};
+}
+
 }  // namespace
 
 SourceSet cover_elements(const TriangleMesh& mesh, const ImpactCurve& curve) {
@@ -52,7 +57,7 @@ SourceSet cover_elements(const TriangleMesh& mesh, const ImpactCurve& curve) {
 CoverField distance_from_cover(const TriangleMesh& mesh, const ImpactCurve& curve, double spacing, Progress& progress,
                                const IntrinsicGeometry* metric) {
   CoverSource source = cover_source(mesh, curve, [](Index) { return true; });
-  const ExactFieldOptions options{.accuracy = cover_accuracy * spacing};
+  const ExactFieldOptions options = cover_options(spacing);
   return {metric ? ExactField::compute(mesh, *metric, source.elements, options, progress)
                  : ExactField::compute(mesh, source.elements, options, progress),
           std::move(source.curve_point)};
@@ -62,7 +67,8 @@ CoverField distance_from_part_of_cover(const TriangleMesh& mesh, const ImpactCur
                                        const std::vector<char>& marked, double stop_distance, double spacing,
                                        Progress& progress) {
   CoverSource source = cover_source(mesh, curve, [&](Index i) { return marked[i] != 0; });
-  const ExactFieldOptions options{.stop_distance = stop_distance, .accuracy = cover_accuracy * spacing};
+  ExactFieldOptions options = cover_options(spacing);
+  options.stop_distance = stop_distance;
   return {ExactField::compute(mesh, source.elements, options, progress), std::move(source.curve_point)};
 }
 

@@ -56,6 +56,18 @@ std::vector<Gate> gates_of(const TriangleMesh& mesh, const Passes& passes, const
   return gates;
 }
 
+void finish(const SurfaceLinker& linker, const SmoothNormals& normals, const ImpactOptions& options, ImpactPlan& plan,
+            Progress& progress) {
+  const bool as_they_are = options.pattern == Pattern::contour || options.pattern == Pattern::planar;
+  GapLimits limits{.spacing = options.spacing,
+                   .widest = as_they_are ? widest_corner_gap : widest_gap,
+                   .metric = options.metric,
+                   .radius = options.min_radius};
+  if (limits.radius == 0 && options.pattern == Pattern::two_way)
+    limits.radius = default_radius_in_spacings * options.spacing;
+  finish_curve(linker, normals, plan, limits, options.min_radius > 0, progress);
+}
+
 class Planner {
  public:
   Planner(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options, Progress& progress)
@@ -92,23 +104,12 @@ class Planner {
           fmt::format("{} lifts may touch the part: no clear way was found for them", assembly.blocked_lifts()));
     }
     plan.curve = assembly.take();
-    if (options_.close_gaps) finish(plan);
+    if (options_.close_gaps) finish(linker_, normals_, options_, plan, progress_);
     plan.contours = std::move(passes_.contours);
     return plan;
   }
 
  private:
-  void finish(ImpactPlan& plan) {
-    const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
-    GapLimits limits{.spacing = options_.spacing,
-                     .widest = as_they_are ? widest_corner_gap : widest_gap,
-                     .metric = options_.metric,
-                     .radius = options_.min_radius};
-    if (limits.radius == 0 && options_.pattern == Pattern::two_way)
-      limits.radius = default_radius_in_spacings * options_.spacing;
-    finish_curve(linker_, normals_, plan, limits, options_.min_radius > 0, progress_);
-  }
-
   /// A closed curve over all passes is free to take the layout that is shorter: runs are none of its concern.
   void choose() {
     const double spacing = (keeps_spacing() ? 1 : pass_allowance) * options_.spacing;
@@ -260,6 +261,13 @@ ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function
   options.validate();
   if (options.pattern == Pattern::trochoidal) return plan_trochoids(mesh, function, options, progress);
   return Planner(mesh, function, options, progress).run();
+}
+
+void finish_plan(const TriangleMesh& mesh, const ImpactOptions& options, ImpactPlan& plan, Progress& progress) {
+  options.validate();
+  const SurfaceLocator locator(mesh);
+  const SmoothNormals normals(mesh);
+  finish(SurfaceLinker(mesh, locator, progress), normals, options, plan, progress);
 }
 
 }  // namespace isopath

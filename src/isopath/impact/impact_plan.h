@@ -55,4 +55,9 @@ struct ImpactPlan {
 ImpactPlan plan_impact(const TriangleMesh& mesh, const SurfaceFunction& function, const ImpactOptions& options,
                        Progress& progress = Progress::none());
 
+/// Closes gaps and rounds corners of a plan that was made without `close_gaps`, as plan_impact does with it; not for
+/// trochoidal plans. `options` are those of the plan otherwise.
+void finish_plan(const TriangleMesh& mesh, const ImpactOptions& options, ImpactPlan& plan,
+                 Progress& progress = Progress::none());
+
 }  // namespace isopath

@@ -7,13 +7,19 @@
 #include <cmath>
 #include <utility>
 
+#include "isopath/field/exact_field_data.h"
 #include "isopath/field/face_part.h"
+#include "isopath/field/part_bound.h"
 #include "isopath/mesh/disjoint_sets.h"
 
 namespace isopath {
 namespace {
 
 constexpr double largest_cell_over_resolution = 10;
+/// In parts larger than this, beside the limit, more than two passes are to be reckoned with.
+constexpr double largest_bounded = 0.5;
+/// Parts smaller than this, beside the resolution, are soon done with anyway.
+constexpr double smallest_bounded = 3;
 /// Centres of neighbouring cells are at most this many of their radii apart, together.
 constexpr double reach_of_neighbours = 1.6;
 
@@ -44,8 +50,11 @@ class SpotSearch {
         halve(corners, part, parts);
         continue;
       }
-      const double distance = field_.value(centre);
+      const WayBack way = best_way_back(field_.data(), face, centre.barycentric);
+      const double distance = way.distance;
       if (distance + radius <= limit_) continue;
+      if (distance <= limit_ && may_be_bounded(part, radius) && bound_in_part(field_.data(), part, way) <= limit_)
+        continue;
       const bool all_open = distance - radius > limit_;
       if (radius > (all_open ? largest_cell_over_resolution : 1.0) * resolution_) {
         halve(corners, part, parts);
@@ -56,6 +65,11 @@ class SpotSearch {
   }
 
  private:
+  /// Whether a bound is worth its cost, about that of looking at two parts; each second time is enough.
+  bool may_be_bounded(const FacePart& part, double radius) const {
+    return part.depth % 2 == 0 && radius <= largest_bounded * limit_ && radius >= smallest_bounded * resolution_;
+  }
+
   const ExactField& field_;
   const TriangleMesh& mesh_;
   double limit_;
@@ -83,11 +97,14 @@ std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cell
         const std::pair<GridCell, Index> first{{x, y, at[2] - 1}, 0};
         for (auto e = std::lower_bound(grid.begin(), grid.end(), first);
              e != grid.end() && e->first <= GridCell{x, y, at[2] + 1}; ++e) {
+          if (e->second <= i) continue;  // each two once
           const SpotCell& a = cells[i];
           const SpotCell& b = cells[e->second];
-          const bool near = (a.position - b.position).norm() <= reach_of_neighbours * (a.radius + b.radius);
+          const double reach = reach_of_neighbours * (a.radius + b.radius);
+          if ((a.position - b.position).squaredNorm() > reach * reach) continue;
           // not from one side of a thin wall to the other
-          if (near && mesh.face_normal(a.at.face).dot(mesh.face_normal(b.at.face)) > 0) sets.join(i, e->second);
+          if (a.at.face == b.at.face || mesh.face_normal(a.at.face).dot(mesh.face_normal(b.at.face)) > 0)
+            sets.join(i, e->second);
         }
       }
     }

@@ -65,25 +65,28 @@ ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& functio
                         const std::function<const SurfaceFunction&()>& two_way_function) {
   const auto two_way = [&]() -> const SurfaceFunction& { return two_way_function ? two_way_function() : function; };
   ImpactOptions tried = options;
-  tried.pattern = pattern_of(mesh, function, values, progress);
-  // Gaps are closed where it is certain that the curve is the one: that takes longer than all else.
-  tried.close_gaps = false;
-  const ImpactPlan draft = plan_impact(mesh, function, tried, progress);
-  if (lifts_of(draft.curve) > 0) {
-    const Pattern first = std::exchange(tried.pattern, Pattern::two_way);
-    const SurfaceFunction& other = two_way();
-    if (!clearly_better(plan_impact(mesh, other, tried, progress).curve, draft.curve)) tried.pattern = first;
+  const auto draft = [&](Pattern pattern) {
+    // gaps are closed where it is certain that the curve is the one: that takes longer than all else
+    tried.pattern = pattern;
+    tried.close_gaps = false;
+    return ChosenPlan{pattern, plan_impact(mesh, pattern == Pattern::two_way ? two_way() : function, tried, progress)};
+  };
+  const auto finished = [&](ChosenPlan plan) {
+    tried.pattern = plan.pattern;
     tried.close_gaps = options.close_gaps;
-    const SurfaceFunction& better = tried.pattern == Pattern::two_way ? other : function;
-    return {tried.pattern, plan_impact(mesh, better, tried, progress)};
+    if (options.close_gaps) finish_plan(mesh, tried, plan.plan, progress);
+    return plan;
+  };
+  ChosenPlan first = draft(pattern_of(mesh, function, values, progress));
+  if (lifts_of(first.plan.curve) > 0) {
+    ChosenPlan other = draft(Pattern::two_way);
+    return finished(clearly_better(other.plan.curve, first.plan.curve) ? std::move(other) : std::move(first));
   }
-  tried.close_gaps = options.close_gaps;
-  ChosenPlan chosen{tried.pattern, plan_impact(mesh, function, tried, progress)};
-  const double ratio = length_on_surface(chosen.plan.curve) * options.spacing / reached_area(mesh, values);
-  if (ratio <= good_length_ratio) return chosen;
-  tried.pattern = Pattern::two_way;
-  ChosenPlan other{tried.pattern, plan_impact(mesh, two_way(), tried, progress)};
-  return clearly_better(other.plan.curve, chosen.plan.curve) ? std::move(other) : std::move(chosen);
+  first = finished(std::move(first));
+  const double ratio = length_on_surface(first.plan.curve) * options.spacing / reached_area(mesh, values);
+  if (ratio <= good_length_ratio) return first;
+  ChosenPlan other = finished(draft(Pattern::two_way));
+  return clearly_better(other.plan.curve, first.plan.curve) ? std::move(other) : std::move(first);
 }
 
 }  // namespace isopath

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +13,7 @@
 
 #include "isopath/contour/blend_mesh.h"
 #include "isopath/core/error.h"
+#include "isopath/core/quiet_progress.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/cover_field.h"
@@ -128,7 +130,7 @@ AutoLoops loops_for(const Job& job) {
 ExactField distances_on(const Part& part, const Job& job, const IntrinsicGeometry* metric, AutoLoops loops,
                         double accuracy, Progress& progress) {
   const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress, loops);
-  const ExactFieldOptions options{.accuracy = accuracy};
+  const ExactFieldOptions options{.accuracy = accuracy, .many_questions = true};
   return metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
                 : ExactField::compute(part.mesh, sources, options, progress);
 }
@@ -352,11 +354,15 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   }
   clock.ends("field");
 
-  plan_curve(result, field, metric ? &*metric : nullptr, progress);
+  // a curve is made of one thing after the other: a second processor gets the picture ready meanwhile
+  tbb::parallel_invoke([&] { plan_curve(result, field, metric ? &*metric : nullptr, progress); },
+                       [&] {
+                         if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
+                       });
   result.distances = std::move(field.at_vertices);
   if (result.job.report) {
-    result.display.refined = refine_for_display(mesh, result.spacing);
-    result.display.distances = values_at_vertices(*field.function, result.display.refined, result.distances, progress);
+    DisplaySurface& display = result.display;
+    display.distances = values_at_vertices(*field.function, display.refined, result.distances, progress);
   }
   // the field ends here: its windows are the largest thing in memory, and the gap needs windows of its own
   field.function.reset();
@@ -416,8 +422,14 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   }
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
 
-  measure(result, metric, progress);
-  result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
+  ToolOptions tool = job.tool;
+  tool.chord_tolerance = std::min(tool.chord_tolerance, most_chord_over_spacing * result.spacing);
+  QuietProgress quiet(progress);
+  tbb::parallel_invoke([&] { measure(result, metric, progress); },
+                       [&] {
+                         result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
+                         result.tool = make_tool_path(result.impact.curve, tool, quiet);
+                       });
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
 
@@ -430,9 +442,6 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   }
 
   progress.stage("tool path");
-  ToolOptions tool = job.tool;
-  tool.chord_tolerance = std::min(tool.chord_tolerance, most_chord_over_spacing * result.spacing);
-  result.tool = make_tool_path(result.impact.curve, tool, progress);
   warn_of_axis_jumps(result, result.warnings, progress);
   clock.ends("tool");
 
