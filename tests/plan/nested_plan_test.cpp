@@ -45,7 +45,11 @@ TEST_F(NestedPlan, OneSpiralWhereTheDistanceHasTwoTops) {
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_GE(result.gap.covered_fraction, 0.995);
-  EXPECT_THROW(plan(dumbbell, Pattern::double_spiral, std::nullopt, 1), Error) << "without blending";
+
+  const PlanResult there_and_back = plan(dumbbell, Pattern::double_spiral, std::nullopt, 1);
+  EXPECT_EQ(there_and_back.job.blend, BlendForm::least) << "needs nested levels, whether asked for or not";
+  EXPECT_EQ(there_and_back.figures.pieces, 1);
+  EXPECT_EQ(there_and_back.figures.lifts, 0);
 }
 
 TEST_F(NestedPlan, AnAnnulusIsBlendedFromLoopToLoop) {

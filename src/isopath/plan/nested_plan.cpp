@@ -89,26 +89,18 @@ std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spac
   return opened_along(cut.refined.mesh, cut.is_cut);
 }
 
-bool wants_nested_levels(const Job& job) { return job.blend || job.pattern == Pattern::double_spiral; }
-
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress) {
   progress.stage("blending");
   const TriangleMesh& mesh = distance.mesh();
-  if (job.blend) {
-    const NestedShape shape = nested_shape_of(mesh);
-    if (shape == NestedShape::annulus) return annulus_field(LoopFields(mesh, spacing, progress), spacing);
-    if (shape == NestedShape::other) {
-      throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
-                  {.advice = "take the pattern two-way, which needs none, or part it first"});
-    }
-    const double radius = job.min_radius > 0 ? job.min_radius : default_radius_in_spacings * spacing;
-    BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing, .radius = radius}, progress);
-    return {std::move(blended.values), blended.spacing};
+  const NestedShape shape = nested_shape_of(mesh);
+  if (shape == NestedShape::annulus) return annulus_field(LoopFields(mesh, spacing, progress), spacing);
+  if (shape == NestedShape::other) {
+    throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
+                {.advice = "take the pattern two-way, which needs none, or part it first"});
   }
-  NestedField nested{{distance.vertex_distances().begin(), distance.vertex_distances().end()}, spacing};
-  const double top = distance.max_vertex_distance();
-  nested.spacing = top / std::max(1.0, std::ceil(top / spacing - 0.02));
-  return nested;
+  const double radius = job.min_radius > 0 ? job.min_radius : default_radius_in_spacings * spacing;
+  BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing, .radius = radius}, progress);
+  return {std::move(blended.values), blended.spacing};
 }
 
 }  // namespace isopath

@@ -23,16 +23,13 @@ NestedShape nested_shape_of(const TriangleMesh& mesh);
 /// no ends. `spacing` is that of the levels, mm. Throws Error(cancelled) on request.
 std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress);
 
-/// True when the job's pattern or blend asks for nested closed levels.
-bool wants_nested_levels(const Job& job);
-
 /// A function whose levels (k - ½) × spacing are to be nested closed curves.
 struct NestedField {
   std::vector<double> values;  ///< at the vertices, mm
   double spacing = 0;          ///< that the levels are to have, mm
 };
 
-/// The function for a job, from the distances on a mesh that is fine enough (contour/blend_mesh.h). `spacing` is the
+/// The function for a job with a blend, from the distances on a mesh that is fine enough (contour/blend_mesh.h). `spacing` is the
 /// one to keep. Throws Error(no_plan) for a part with more holes, and what `blend` throws.
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress);
 

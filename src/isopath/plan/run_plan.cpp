@@ -253,7 +253,7 @@ void plan_curve(PlanResult& result, Field& field, const IntrinsicGeometry* metri
                         .min_radius = result.job.min_radius,
                         .metric = metric};
   const bool smooth = result.job.smooth > 0;
-  if (wants_nested_levels(result.job)) {
+  if (result.job.blend) {
     const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
     options.pattern = result.pattern;
     result.impact = field.spacing > 0 && is_spiral ? plan_nested(result, field, progress)
@@ -348,7 +348,7 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   check_pass_count(field.at_vertices, result.spacing);
   check_facing(mesh, field.at_vertices, result.job.tool);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
-  if (wants_nested_levels(result.job)) {
+  if (result.job.blend) {
     result.pattern = result.job.pattern.value_or(Pattern::spiral);
     field = nested_field_of(result, std::move(field), progress);
   }
@@ -404,6 +404,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   job.validate();
   PlanResult result;
   result.job = job;
+  if (job.pattern == Pattern::double_spiral && !job.blend) result.job.blend = BlendForm::least;
   StageClock clock(result.times);
 
   result.part = load_part(job.mesh, job.unit, progress);
