@@ -132,6 +132,27 @@ TEST(Spokes, RefusesAToleranceOfNothing) {
   EXPECT_THROW(spokes(boundary_field(mesh), 0), Error);
 }
 
+/// The distance of a point inside from the boundary of a regular polygon around the origin.
+double distance_in_polygon(int n, double radius, const Vec3& p) {
+  double nearest = infinity;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2 * std::numbers::pi * (k + 0.5) / n;
+    const double out = p.x() * std::cos(angle) + p.y() * std::sin(angle);
+    nearest = std::min(nearest, radius * std::cos(std::numbers::pi / n) - out);
+  }
+  return nearest;
+}
+
+// Many straight fronts overlap in every list, and some rays pass exactly through vertices.
+TEST(Blend, DistancesItStartsFromAreThoseOfThePolygon) {
+  for (const int n : {60, 97, 120, 200}) {
+    const TriangleMesh mesh = fine(test::open_cone(n, 10, 10, 10), 1);
+    const ExactField field = boundary_field(mesh);
+    for (Index v = 0; v < mesh.n_vertices(); ++v)
+      ASSERT_NEAR(field.vertex_distances()[v], distance_in_polygon(n, 10, mesh.position(v)), 1e-9) << n << " sides";
+  }
+}
+
 TEST(Blend, OfADiscIsTheDistance) {
   const TriangleMesh mesh = fine(test::open_cone(120, 10, 10, 10), 1);
   const ExactField field = boundary_field(mesh);

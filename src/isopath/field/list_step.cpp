@@ -93,6 +93,8 @@ struct Windows {
     return any_line ? hn::IfThenElse(line, x, circle) : circle;
   }
   V ray_y() const { return hn::Abs(y); }
+  /// Length of that direction, within a factor of √2.
+  V ray_length(V at) const { return hn::Add(hn::Abs(ray_x(at)), ray_y()); }
 };
 
 unsigned bits_of(M mask) {
@@ -311,6 +313,16 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
   reach.first_right = n;
   const V apex_x = all(triangle.apex.x());
   const V apex_y = all(triangle.apex.y());
+  const V rounding = all(triangle.rounding);
+  const auto bend = [&](std::size_t i, double at) {
+    const double aside = triangle.apex.x() - at;
+    const double way = distance(windows, i, at) + std::sqrt(aside * aside + triangle.apex.y() * triangle.apex.y());
+    if (way < reach.distance) {
+      reach.distance = way;
+      reach.x = at;
+      reach.window = static_cast<Index>(i);
+    }
+  };
   // Without branches, which short lists would mispredict one after the other.
   V nearest_lanes = all(infinity);
   V nearest_at = zero();
@@ -335,6 +347,15 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
     last_left = only_left != 0 ? i + std::bit_width(only_left) : last_left;
     first_right = std::min(first_right, i + first_bit(only_right));
     reach.first_right = std::min(reach.first_right, i + first_bit(right_bits));
+    // In lists that overlap, the beams on the two sides of the apex need not be neighbours: each that an apex divides
+    // within rounding is bent round.
+    const M grazes =
+        hn::Or(hn::And(hn::Gt(at_begin, zero()), hn::Le(at_begin, hn::Mul(rounding, w.ray_length(w.begin)))),
+               hn::And(hn::Lt(at_end, zero()), hn::Ge(at_end, hn::Neg(hn::Mul(rounding, w.ray_length(w.end))))));
+    for (unsigned bits = bits_of(hn::And(present, grazes)); bits != 0; bits &= bits - 1) {
+      const std::size_t k = i + first_bit(bits);
+      bend(k, side_of_begin[k] > 0 ? windows.begin[k] : windows.end[k]);
+    }
     const V way = hn::IfThenElse(hn::And(left, right), w.straight_to(apex_x, apex_y), all(infinity));
     const M nearer = hn::Lt(way, nearest_lanes);
     nearest_at = hn::IfThenElse(nearer, indices(i), nearest_at);
@@ -352,23 +373,15 @@ ApexReach reach_apex(const WindowArrays& windows, std::size_t n, const StepGeome
     const double ay = triangle.apex.y();
     const double crossing = y > 0 ? ax - x * (ay / y) : x + (ax - x) * (-y / (ay - y));
     reach.direct_x = std::clamp(crossing, windows.begin[reach.direct], windows.end[reach.direct]);
-    reach.distance = nearest;
     reach.beaten_from = nearest + margin;
-    reach.x = reach.direct_x;
-    reach.window = reach.direct;
-  }
-  const auto bend = [&](Index i, double at) {
-    const double aside = triangle.apex.x() - at;
-    const double way = distance(windows, static_cast<std::size_t>(i), at) +
-                       std::sqrt(aside * aside + triangle.apex.y() * triangle.apex.y());
-    if (way < reach.distance) {
-      reach.distance = way;
-      reach.x = at;
-      reach.window = i;
+    if (nearest <= reach.distance) {
+      reach.distance = nearest;
+      reach.x = reach.direct_x;
+      reach.window = reach.direct;
     }
-  };
-  if (last_left > 0) bend(static_cast<Index>(last_left - 1), windows.end[last_left - 1]);
-  if (first_right < n) bend(static_cast<Index>(first_right), windows.begin[first_right]);
+  }
+  if (last_left > 0) bend(last_left - 1, windows.end[last_left - 1]);
+  if (first_right < n) bend(first_right, windows.begin[first_right]);
   return reach;
 }
 
