@@ -28,7 +28,8 @@ struct Job {
   std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
   std::optional<Pattern> pattern = {};               ///< none: what suits the part, see plan/auto_pattern.h
   /// Blends the distances with the medial axis, so that the isolines of a part without holes are nested closed curves:
-  /// for the patterns contour, spiral, double-spiral and two-way.
+  /// for the patterns contour, spiral, double-spiral and two-way. None is `least` for a double spiral, which needs
+  /// them.
   std::optional<BlendForm> blend = {};
   Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
