@@ -1,13 +1,13 @@
 #include "isopath/field/exact_field.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "isopath/core/error.h"
+#include "isopath/core/side_by_side.h"
 #include "isopath/field/exact_field_data.h"
 #include "isopath/field/graph_field.h"
 #include "isopath/field/list_propagation.h"
@@ -150,11 +150,11 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   MergeLimits limits;
   SourceFronts fronts;
   std::optional<ListPropagation> room;
-  tbb::parallel_invoke([&] { limits = merge_limits(data->mesh, data->geometry, sources, options, progress); },
-                       [&] {
-                         fronts = source_fronts(data->mesh, data->geometry, sources, progress);
-                         room.emplace(data->mesh, data->geometry, true);
-                       });
+  side_by_side([&] { limits = merge_limits(data->mesh, data->geometry, sources, options, progress); },
+               [&] {
+                 fronts = source_fronts(data->mesh, data->geometry, sources, progress);
+                 room.emplace(data->mesh, data->geometry, true);
+               });
   ListPropagation& propagation = *room;
   propagation.start(fronts, limits);
   propagation.run(options.stop_distance, progress);

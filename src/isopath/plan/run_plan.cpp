@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +13,7 @@
 #include "isopath/contour/blend_mesh.h"
 #include "isopath/core/error.h"
 #include "isopath/core/quiet_progress.h"
+#include "isopath/core/side_by_side.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/cover_field.h"
@@ -355,10 +355,10 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   clock.ends("field");
 
   // a curve is made of one thing after the other: a second processor gets the picture ready meanwhile
-  tbb::parallel_invoke([&] { plan_curve(result, field, metric ? &*metric : nullptr, progress); },
-                       [&] {
-                         if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
-                       });
+  side_by_side([&] { plan_curve(result, field, metric ? &*metric : nullptr, progress); },
+               [&] {
+                 if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
+               });
   result.distances = std::move(field.at_vertices);
   if (result.job.report) {
     DisplaySurface& display = result.display;
@@ -426,11 +426,11 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   ToolOptions tool = job.tool;
   tool.chord_tolerance = std::min(tool.chord_tolerance, most_chord_over_spacing * result.spacing);
   QuietProgress quiet(progress);
-  tbb::parallel_invoke([&] { measure(result, metric, progress); },
-                       [&] {
-                         result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
-                         result.tool = make_tool_path(result.impact.curve, tool, quiet);
-                       });
+  side_by_side([&] { measure(result, metric, progress); },
+               [&] {
+                 result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
+                 result.tool = make_tool_path(result.impact.curve, tool, quiet);
+               });
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
 
