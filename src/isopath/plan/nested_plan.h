@@ -29,8 +29,8 @@ struct NestedField {
   double spacing = 0;          ///< that the levels are to have, mm
 };
 
-/// The function for a job with a blend, from the distances on a mesh that is fine enough (contour/blend_mesh.h). `spacing` is the
-/// one to keep. Throws Error(no_plan) for a part with more holes, and what `blend` throws.
+/// The function for a job with a blend, from the distances on a mesh that is fine enough (contour/blend_mesh.h).
+/// `spacing` is the one to keep. Throws Error(no_plan) for a part with more holes, and what `blend` throws.
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress);
 
 }  // namespace isopath
