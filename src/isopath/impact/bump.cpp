@@ -93,25 +93,8 @@ class BumpBuilder {
     return replacement({best->foot, {best->foot.after + 1, best->foot.at, best->foot.position}, best->points, {}, 0});
   }
 
-  std::optional<Replacement> best_swell() const {
-    std::optional<Bump> least;
-    for (const CurvePlace& foot : feet()) {
-      auto swell = swell_from(foot);
-      if (swell && (!least || swell->cost < least->cost)) least = std::move(swell);
-    }
-    if (!least) return std::nullopt;
-    return replacement(*least);
-  }
-
-  std::optional<Replacement> best() const {
-    std::optional<Bump> least;
-    for (const CurvePlace& foot : feet()) {
-      auto bump = bump_from(foot);
-      if (bump && (!least || bump->cost < least->cost)) least = std::move(bump);
-    }
-    if (!least) return std::nullopt;
-    return replacement(*least);
-  }
+  std::optional<Replacement> best_swell() const { return cheapest(&BumpBuilder::swell_from); }
+  std::optional<Replacement> best() const { return cheapest(&BumpBuilder::bump_from); }
 
  private:
   struct Bump {
@@ -130,6 +113,17 @@ class BumpBuilder {
 
   double distance_in_space(const SpotCell& cell) const {
     return length_of(make_curve(mesh_, cover_.field.shortest_path(cell.at)));
+  }
+
+  /// The one that lengthens the curve least, of those from each place near the spot.
+  std::optional<Replacement> cheapest(std::optional<Bump> (BumpBuilder::*from)(const CurvePlace&) const) const {
+    std::optional<Bump> least;
+    for (const CurvePlace& foot : feet()) {
+      std::optional<Bump> bump = (this->*from)(foot);
+      if (bump && (!least || bump->cost < least->cost)) least = std::move(bump);
+    }
+    if (!least) return std::nullopt;
+    return replacement(*least);
   }
 
   /// Where the shortest ways from the top of the spot, and from cells far from those asked before, come to the curve.
