@@ -81,9 +81,11 @@ blended square square --spacing 5 --pattern double-spiral --blend
 blended dumbbell dumbbell --spacing 5 --pattern spiral --blend
 blended eccentric eccentric --spacing 4 --pattern spiral --blend
 blended slab slab --spacing 5 --pattern spiral --blend
+blended plate plate --spacing 5 --pattern spiral --blend
 python3 tools/path_picture.py docs/img/blend_forms.svg "$out"/l_{distance,paper,least}/impact.csv
 python3 tools/path_picture.py docs/img/blend_spirals.svg "$out"/{star,notch}/impact.csv
 python3 tools/path_picture.py docs/img/blend_neck.svg "$out"/dumbbell/impact.csv
 python3 tools/path_picture.py docs/img/blend_annuli.svg "$out"/{eccentric,slab}/impact.csv
+python3 tools/path_picture.py docs/img/blend_holes.svg "$out"/plate/impact.csv
 python3 tools/path_picture.py docs/img/double_spirals.svg "$out"/{disc,square}/impact.csv
 ls docs/img/blend_*.svg docs/img/double_spirals.svg

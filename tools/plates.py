@@ -89,3 +89,6 @@ ring("washer", [(60 * math.cos(t), 60 * math.sin(t)) for t in turn[::2]],
      [(25 * math.cos(t), 25 * math.sin(t)) for t in turn[::2]], 12)
 ring("eccentric", [(60 * math.cos(t), 60 * math.sin(t)) for t in turn[::2]],
      [(20 + 25 * math.cos(t), 25 * math.sin(t)) for t in turn[::2]], 14)
+holes = [(8, 13, 7, 11), (21, 25, 3, 7), (28, 33, 11, 15)]
+cells("plate", 40, 20, 5, lambda i, j: not any(a <= i < b and c <= j < d for a, b, c, d in holes),
+      lambda x, y: 8 * math.sin(x / 25) * math.cos(y / 25))

@@ -173,7 +173,7 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
           "planar: cuts with parallel planes")
       ->default_str("auto");
   command.add_flag("--blend", given.blend,
-                   "Blend the distances with the medial axis, so that a part without holes gets one spiral");
+                   "Blend the distances with the medial axis, so that the part gets one spiral");
   command.add_option("--blend-form", given.blend_form, "Blend in this form: least, paper; or none")
       ->default_str("least with --blend and for double spirals, else none");
   command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")

@@ -3,9 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/core/quiet_progress.h"
+#include "isopath/field/exact_distances.h"
+#include "isopath/field/source.h"
+#include "isopath/mesh/refine.h"
+#include "isopath/plan/hole_bridges.h"
 #include "isopath/plan/run_plan.h"
 #include "support/test_meshes.h"
 
@@ -32,9 +40,9 @@ TEST_F(NestedPlan, ShapesAreToldByTheirLoopsAndHandles) {
   EXPECT_EQ(nested_shape_of(test::l_shape(3)), NestedShape::disc);
   EXPECT_EQ(nested_shape_of(test::icosphere(1, 1)), NestedShape::disc);
   EXPECT_EQ(nested_shape_of(test::open_cylinder(8, 3, 1, 1)), NestedShape::annulus);
-  EXPECT_EQ(nested_shape_of(test::torus(8, 6, 3, 1)), NestedShape::other);
+  EXPECT_EQ(nested_shape_of(test::torus(8, 6, 3, 1)), NestedShape::handles);
   EXPECT_EQ(nested_shape_of(test::planar_cells(7, 3, [](int i, int j) { return j != 1 || (i != 1 && i != 5); })),
-            NestedShape::other);
+            NestedShape::holes);
 }
 
 TEST_F(NestedPlan, OneSpiralWhereTheDistanceHasTwoTops) {
@@ -77,14 +85,96 @@ TEST_F(NestedPlan, AnAnnulusOfUnevenWidthIsCutOpen) {
   EXPECT_LE(result.length_ratio, 1.2);
 }
 
-TEST_F(NestedPlan, MoreHolesGetATwoWayCurveAndAWarning) {
+TEST_F(NestedPlan, SeveralHolesAreCutOpenAndGetOneSpiral) {
   const TriangleMesh mesh =
       test::planar_cells(14, 6, [](int i, int j) { return j < 2 || j > 3 || (i != 3 && i != 10); });
-  const PlanResult result = plan(mesh, Pattern::spiral, BlendForm::least, 0.7);
+  const PlanResult result = plan(mesh, Pattern::spiral, BlendForm::least, 0.4);
+  EXPECT_EQ(result.pattern, Pattern::spiral);
+  EXPECT_EQ(result.figures.pieces, 1);
+  EXPECT_EQ(result.figures.lifts, 0);
+  EXPECT_LE(result.gap.max, 1.05);
+  EXPECT_GE(result.gap.covered_fraction, 0.999);
+  EXPECT_NEAR(result.part.mesh.area(), 14 * 6 - 4, 1e-9);
+  EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(),
+                          [](const std::string& text) { return text.find("cut open") != std::string::npos; }));
+}
+
+TEST_F(NestedPlan, HandlesGetATwoWayCurveAndAWarning) {
+  const PlanResult result = plan(test::torus(12, 8, 3, 1), Pattern::spiral, BlendForm::least, 0.7);
   EXPECT_EQ(result.pattern, Pattern::two_way);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(),
-                          [](const std::string& text) { return text.find("holes") != std::string::npos; }));
+                          [](const std::string& text) { return text.find("handles") != std::string::npos; }));
+}
+
+double length_of(const TriangleMesh& mesh, const std::vector<SurfacePoint>& path) {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    sum += (position_of(mesh, path[i]) - position_of(mesh, path[i - 1])).norm();
+  return sum;
+}
+
+/// Prim's tree over all pairs of loops, each distance from a field of its own.
+double least_tree_length(const TriangleMesh& mesh) {
+  const std::size_t n = mesh.boundary_loops().size();
+  std::vector<std::vector<double>> apart(n, std::vector<double>(n, infinity));
+  for (std::size_t a = 0; a < n; ++a) {
+    const std::vector<double> distance = exact_distances(mesh, boundary_source(mesh, static_cast<Index>(a)));
+    for (std::size_t b = 0; b < n; ++b) {
+      for (const Index h : mesh.boundary_loops()[b]) apart[a][b] = std::min(apart[a][b], distance[mesh.from(h)]);
+    }
+  }
+  std::vector<char> in(n, 0);
+  in[0] = 1;
+  double sum = 0;
+  for (std::size_t round = 1; round < n; ++round) {
+    std::pair<double, std::size_t> best = {infinity, 0};
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b < n; ++b) {
+        if (in[a] && !in[b]) best = std::min(best, {apart[a][b], b});
+      }
+    }
+    sum += best.first;
+    in[best.second] = 1;
+  }
+  return sum;
+}
+
+TEST(HoleBridges, AreTheShortestTreeOfLoopsAndLeaveADisc) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Rng rng(seed);
+    // single cells at random, no two of them with a common corner, so that each is a hole
+    std::set<std::pair<int, int>> holes;
+    const Index wanted = 1 + test::random_index(rng, 8);
+    for (int tries = 0; tries < 40 && static_cast<Index>(holes.size()) < wanted; ++tries) {
+      const int i = 1 + static_cast<int>(test::random_index(rng, 12));
+      const int j = 1 + static_cast<int>(test::random_index(rng, 8));
+      const bool is_free = std::none_of(holes.begin(), holes.end(), [&](const auto& hole) {
+        return std::abs(hole.first - i) < 2 && std::abs(hole.second - j) < 2;
+      });
+      if (is_free) holes.insert({i, j});
+    }
+    const TriangleMesh mesh = split_uniformly(test::planar_cells(14, 10, [&](int i, int j) {
+                                return !holes.contains({i, j});
+                              })).mesh;
+    const auto bridges = hole_bridges(mesh);
+    ASSERT_EQ(bridges.size(), holes.size());
+    double sum = 0;
+    for (const auto& bridge : bridges) sum += length_of(mesh, bridge);
+    EXPECT_NEAR(sum, least_tree_length(mesh), 1e-4);
+
+    const auto opened = opened_holes(mesh, 1.5, Progress::none());
+    ASSERT_TRUE(opened);
+    EXPECT_EQ(nested_shape_of(*opened), NestedShape::disc) << "a cycle would cut a piece off, a lack leaves a hole";
+    EXPECT_EQ(opened->n_components(), 1);
+    EXPECT_NEAR(opened->area(), mesh.area(), 1e-9);
+  }
+}
+
+TEST(HoleBridges, NoneOnADiscAndNoDiscWithHandles) {
+  EXPECT_TRUE(hole_bridges(test::l_shape(3)).empty());
+  EXPECT_FALSE(opened_holes(test::torus(8, 6, 3, 1), 1, Progress::none()));
 }
 
 }  // namespace

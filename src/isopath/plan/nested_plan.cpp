@@ -8,8 +8,8 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/impact/finish_curve.h"
-#include "isopath/mesh/cut_along.h"
 #include "isopath/mesh/refine.h"
+#include "isopath/plan/hole_bridges.h"
 
 namespace isopath {
 namespace {
@@ -68,25 +68,19 @@ NestedShape nested_shape_of(const TriangleMesh& mesh) {
   }
   for (const auto& loop : mesh.boundary_loops()) ++loops[mesh.component_of(TriangleMesh::face_of(loop.front()))];
   if (mesh.n_components() == 1 && loops[0] == 2 && characteristic[0] == 0) return NestedShape::annulus;
+  NestedShape shape = NestedShape::disc;
   for (Index c = 0; c < mesh.n_components(); ++c) {
-    if (loops[c] > 1 || characteristic[c] != (loops[c] == 1 ? 1 : 2)) return NestedShape::other;
+    if (characteristic[c] != 2 - loops[c]) return NestedShape::handles;
+    if (loops[c] > 1) shape = NestedShape::holes;
   }
-  return NestedShape::disc;
+  return shape;
 }
 
 std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress) {
   const TriangleMesh even = split_long_edges(mesh, judged_in_spacings * spacing, most_faces).mesh;
   const LoopFields fields(even, spacing, progress);
   if (length_ratio_of(even, annulus_field(fields, spacing).values) <= most_length_ratio) return std::nullopt;
-  Index narrowest = no_index;
-  for (const Index h : even.boundary_loops()[1]) {
-    const Index v = even.from(h);
-    if (narrowest == no_index || fields.outer.vertex_distances()[v] < fields.outer.vertex_distances()[narrowest])
-      narrowest = v;
-  }
-  const std::vector<SurfacePoint> lines[] = {fields.outer.shortest_path(point_at_vertex(even, narrowest))};
-  const CutMesh cut = cut_along(even, lines);
-  return opened_along(cut.refined.mesh, cut.is_cut);
+  return opened_holes(mesh, spacing, progress);
 }
 
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress) {
@@ -94,9 +88,9 @@ NestedField nested_field(const Job& job, const ExactField& distance, double spac
   const TriangleMesh& mesh = distance.mesh();
   const NestedShape shape = nested_shape_of(mesh);
   if (shape == NestedShape::annulus) return annulus_field(LoopFields(mesh, spacing, progress), spacing);
-  if (shape == NestedShape::other) {
+  if (shape != NestedShape::disc) {
     throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
-                {.advice = "take the pattern two-way, which needs none, or part it first"});
+                {.advice = "cut it open first, or take the pattern two-way, which needs none"});
   }
   const double radius = job.min_radius > 0 ? job.min_radius : default_radius_in_spacings * spacing;
   BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing, .radius = radius}, progress);

@@ -14,7 +14,8 @@ namespace isopath {
 enum class NestedShape {
   disc,     ///< every component is a disc, or closed and without handles
   annulus,  ///< one component with two boundary loops
-  other,    ///< more holes or handles: no level is one closed curve around all of them
+  holes,    ///< no handles, and some component with more loops: discs once they are cut open, see hole_bridges.h
+  handles,  ///< no level is one closed curve around all of them
 };
 NestedShape nested_shape_of(const TriangleMesh& mesh);
 
@@ -30,7 +31,7 @@ struct NestedField {
 };
 
 /// The function for a job with a blend, from the distances on a mesh that is fine enough (contour/blend_mesh.h).
-/// `spacing` is the one to keep. Throws Error(no_plan) for a part with more holes, and what `blend` throws.
+/// `spacing` is the one to keep. Throws Error(no_plan) for a part with more holes or handles, and what `blend` throws.
 NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress);
 
 }  // namespace isopath

@@ -20,6 +20,7 @@
 #include "isopath/impact/level_spiral.h"
 #include "isopath/plan/auto_pattern.h"
 #include "isopath/plan/gap_choice.h"
+#include "isopath/plan/hole_bridges.h"
 #include "isopath/plan/make_programs.h"
 #include "isopath/plan/make_sources.h"
 #include "isopath/plan/nested_plan.h"
@@ -195,30 +196,43 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
   all.insert(all.end(), more.begin(), more.end());
 }
 
+/// Cuts the part open where nested levels need it; its field is then that of the part cut open. False where there are
+/// none to be had.
+bool open_for_nesting(PlanResult& result, Field& field, Progress& progress) {
+  TriangleMesh& mesh = result.part.mesh;
+  const NestedShape shape = nested_shape_of(mesh);
+  if (shape == NestedShape::disc) return true;
+  std::optional<TriangleMesh> opened;
+  if (shape == NestedShape::annulus && result.job.blend == BlendForm::least)
+    opened = opened_annulus(mesh, result.spacing, progress);
+  if (shape == NestedShape::holes) opened = opened_holes(mesh, result.spacing, progress);
+  if (!opened) return shape == NestedShape::annulus;
+  result.warnings.push_back(
+      shape == NestedShape::annulus
+          ? "the annulus is of uneven width: levels from loop to loop would be wasteful, so it was planned as if cut "
+            "open where it is narrowest"
+          : "the part has holes: no level goes round all of them, so it was planned as if cut open along the shortest "
+            "ways between them");
+  field.function.reset();
+  mesh = *std::move(opened);
+  std::optional<IntrinsicGeometry> in_space;
+  field = field_of(result, in_space, progress);
+  return true;
+}
+
 /// The function whose levels are nested closed curves, on a mesh made fine enough for it. A part that has none keeps
 /// the field it has, and a two-way curve is planned.
 Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
-  if (result.job.blend && nested_shape_of(result.part.mesh) == NestedShape::other) {
+  if (!open_for_nesting(result, field, progress)) {
     result.warnings.push_back(
-        "the part has several holes or handles: no isoline goes round all of them, so nothing was blended and a "
-        "two-way curve was planned");
+        "the part has handles: no isoline goes round all of them, so nothing was blended and a two-way curve was "
+        "planned");
     result.pattern = Pattern::two_way;
     return field;
   }
   const double spacing = result.spacing;
   TriangleMesh& mesh = result.part.mesh;
   std::optional<IntrinsicGeometry> in_space;
-  if (result.job.blend == BlendForm::least && nested_shape_of(mesh) == NestedShape::annulus) {
-    if (auto opened = opened_annulus(mesh, spacing, progress)) {
-      result.warnings.push_back(
-          "the annulus is of uneven width: levels from loop to loop would be wasteful, so it was planned as if cut "
-          "open "
-          "where it is narrowest");
-      field.function.reset();
-      mesh = *std::move(opened);
-      field = field_of(result, in_space, progress);
-    }
-  }
   TriangleMesh fine = refine_for_blend(mesh, *field.function, spacing, progress);
   NestedField nested;
   for (int round = 0; round < 2; ++round) {
