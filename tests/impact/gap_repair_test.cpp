@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "impact/curve_checks.h"
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/min_radius.h"
+#include "isopath/impact/near_places.h"
 #include "isopath/impact/open_spots.h"
 #include "isopath/impact/ridge_passes.h"
 
@@ -149,8 +151,27 @@ TEST(open_spots, lie_on_the_ridges_of_nested_squares_and_nowhere_else) {
     }
   }
   const std::vector<Vec3> corner = {Vec3(0, 0, 0)};
-  const NearPlaces near(corner, 2.5 * w);
+  const NearPlaces near(corner);
   EXPECT_EQ(open_spots(cover.field, limit, resolution, Progress::none(), {&near, 1.2 * w}).size(), 1u);
+}
+
+TEST(near_places, finds_what_is_near_and_nothing_else) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  const auto place = [&](double size) { return Vec3(size * coordinate(random), size * coordinate(random), 0.1); };
+  EXPECT_FALSE(NearPlaces({}).any_near(Vec3::Zero(), 1));
+  for (const int count : {1, 4, 5, 300}) {
+    std::vector<Vec3> places;
+    for (int i = 0; i < count; ++i) places.push_back(i % 3 == 2 ? places.back() : place(1));
+    const NearPlaces near(places);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 p = place(1.5);
+      double least = infinity;
+      for (const Vec3& q : places) least = std::min(least, (q - p).norm());
+      const double radius = i % 2 == 0 ? least : std::abs(coordinate(random));
+      EXPECT_EQ(near.any_near(p, radius), least <= radius) << count << " places, question " << i;
+    }
+  }
 }
 
 TEST(gap_repair, draws_corners_out_no_farther_than_needed) {

@@ -138,7 +138,7 @@ class GapCloser {
   /// Bumps and loops change gaps only beside them, and what lies two spacings away has no part in those.
   View look_beside(const std::vector<Vec3>& places) {
     const double w = limits_.spacing;
-    const NearPlaces changed(places, 2.5 * w);
+    const NearPlaces changed(places);
     QuietProgress quiet(progress_);
     CoverField cover = [&] {
       if (!may_look_at_parts_) return distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);

@@ -2,50 +2,73 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "isopath/core/geometry.h"
 
 namespace isopath {
 
-/// Places in a grid of cells, to ask what is near.
+/// Places sorted into boxes within boxes, to ask what is near.
 class NearPlaces {
  public:
-  /// For questions with a radius of at most `reach`.
-  NearPlaces(std::span<const Vec3> places, double reach) : reach_(reach) {
-    for (const Vec3& p : places) places_.emplace_back(cell_of(p), p);
-    std::sort(places_.begin(), places_.end(), before);
+  explicit NearPlaces(std::span<const Vec3> places) : places_(places.begin(), places.end()) {
+    if (!places_.empty()) divide(0, places_.size());
   }
 
   /// Whether one of them is within `radius`.
   bool any_near(const Vec3& p, double radius) const {
-    const Cell at = cell_of(p);
-    for (Index x = at[0] - 1; x <= at[0] + 1; ++x) {
-      for (Index y = at[1] - 1; y <= at[1] + 1; ++y) {
-        const Cell last{x, y, at[2] + 1};
-        for (auto e = std::lower_bound(places_.begin(), places_.end(), Place{{x, y, at[2] - 1}, Vec3::Zero()}, before);
-             e != places_.end() && e->first <= last; ++e) {
-          if ((e->second - p).norm() <= radius) return true;
+    if (boxes_.empty()) return false;
+    std::array<std::size_t, most_depth + 1> open{};
+    std::size_t n_open = 1;
+    while (n_open > 0) {
+      const std::size_t index = open[--n_open];
+      const Box& box = boxes_[index];
+      // squares of lengths just below the radius may come out above its square
+      if (box.bounds.squaredExteriorDistance(p) > rounding * radius * radius) continue;
+      if (box.right == 0) {
+        for (std::size_t i = box.first; i < box.past; ++i) {
+          if ((places_[i] - p).norm() <= radius) return true;
         }
+        continue;
       }
+      open[n_open++] = box.right;
+      open[n_open++] = index + 1;
     }
     return false;
   }
 
  private:
-  using Cell = std::array<Index, 3>;
-  using Place = std::pair<Cell, Vec3>;
-  static bool before(const Place& a, const Place& b) { return a.first < b.first; }
-  Cell cell_of(const Vec3& p) const {
-    return {static_cast<Index>(std::floor(p.x() / reach_)), static_cast<Index>(std::floor(p.y() / reach_)),
-            static_cast<Index>(std::floor(p.z() / reach_))};
+  static constexpr std::size_t few = 4;
+  static constexpr std::size_t most_depth = 64;  // halves of halves: no vector is as long as 2^64
+  static constexpr double rounding = 1 + 1e-12;
+
+  struct Box {
+    Box3 bounds;
+    std::size_t first = 0;
+    std::size_t past = 0;
+    std::size_t right = 0;  ///< the left one comes next; 0 where places are listed
+  };
+
+  void divide(std::size_t first, std::size_t past) {
+    const std::size_t here = boxes_.size();
+    Box& box = boxes_.emplace_back(Box{Box3(), first, past, 0});
+    for (std::size_t i = first; i < past; ++i) box.bounds.extend(places_[i]);
+    if (past - first <= few) return;
+    int axis = 0;
+    box.bounds.sizes().maxCoeff(&axis);
+    const std::size_t middle = first + (past - first) / 2;
+    const auto at = [&](std::size_t i) { return places_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(first), at(middle), at(past),
+                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    divide(first, middle);
+    boxes_[here].right = boxes_.size();
+    divide(middle, past);
   }
 
-  double reach_;
-  std::vector<Place> places_;
+  std::vector<Vec3> places_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace isopath

@@ -13,10 +13,6 @@
 namespace isopath {
 namespace {
 
-/// Edges longer than so much of the longest are halved in one round. Fewer at a time as the triangles run out, so that
-/// the edges that are left are as alike as can be.
-constexpr std::array<double, 3> round_shares = {0.75, 0.9, 0.98};
-
 class Refiner {
  public:
   explicit Refiner(const TriangleMesh& mesh) : positions_(mesh.soup().positions) {
@@ -45,33 +41,6 @@ class Refiner {
       for (std::size_t i = 0; i < leaves_.size(); ++i) split[i] = must_follow(leaves_[i]);
     }
     return true;
-  }
-
-  /// Halves every edge longer than `limit`. False, without a change, when there is none or when that would make more
-  /// than `most_faces` triangles.
-  bool halve_edges(double limit, std::size_t most_faces) {
-    const auto n_long = [&](const Leaf& leaf) {
-      int n = 0;
-      for (int i = 0; i < 3; ++i) n += length_of(leaf, i) > limit;
-      return n;
-    };
-    std::size_t more = 0;
-    for (const Leaf& leaf : leaves_) more += static_cast<std::size_t>(n_long(leaf));
-    if (more == 0 || leaves_.size() + more > most_faces) return false;
-    std::vector<Leaf> next;
-    next.reserve(leaves_.size() + more);
-    for (const Leaf& leaf : leaves_) halve_sides(leaf, limit, next);
-    leaves_ = std::move(next);
-    middle_.clear();  // every triangle beside a halved edge was divided with it
-    return true;
-  }
-
-  double longest_edge() const {
-    double longest = 0;
-    for (const Leaf& leaf : leaves_) {
-      for (int i = 0; i < 3; ++i) longest = std::max(longest, length_of(leaf, i));
-    }
-    return longest;
   }
 
   RefinedMesh finish() {
@@ -111,56 +80,6 @@ class Refiner {
     RefineTriangle out{leaf.face, leaf.barycentric, {}, leaf.level};
     for (int i = 0; i < 3; ++i) out.position[i] = positions_[leaf.corner[i]];
     return out;
-  }
-
-  double length_of(const Leaf& leaf, int i) const {
-    return (positions_[leaf.corner[(i + 1) % 3]] - positions_[leaf.corner[i]]).norm();
-  }
-
-  /// The parts of a triangle whose sides above the limit are halved: corners are cut off, a quadrangle that is left is
-  /// cut by its shorter diagonal.
-  void halve_sides(const Leaf& leaf, double limit, std::vector<Leaf>& out) {
-    std::vector<Index> ring;  // corners and middles in order
-    std::vector<Vec3> at;
-    std::vector<char> is_middle;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      ring.push_back(leaf.corner[i]);
-      at.push_back(leaf.barycentric[i]);
-      is_middle.push_back(0);
-      if (!(length_of(leaf, i) > limit)) continue;
-      at.emplace_back(0.5 * (leaf.barycentric[i] + leaf.barycentric[j]));
-      ring.push_back(make_middle(leaf.corner[i], leaf.corner[j], {leaf.face, at.back()}));
-      is_middle.push_back(1);
-    }
-    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-      out.push_back({{ring[a], ring[b], ring[c]}, leaf.face, {at[a], at[b], at[c]}, leaf.level + 1});
-    };
-    const std::size_t n = ring.size();
-    std::size_t first = 0;  // a corner between two middles, or else a middle
-    while (n > 3 && n != 5 && !is_middle[first]) ++first;
-    while (n == 5 && (is_middle[first] || !is_middle[(first + 4) % 5] || !is_middle[(first + 1) % 5])) ++first;
-    const auto k = [&](std::size_t i) { return (first + i) % n; };
-    if (n == 3) {
-      out.push_back(leaf);
-    } else if (n == 4) {
-      add(k(0), k(1), k(2));
-      add(k(0), k(2), k(3));
-    } else if (n == 5) {
-      add(k(4), k(0), k(1));
-      const double one = (positions_[ring[k(1)]] - positions_[ring[k(3)]]).norm();
-      const double other = (positions_[ring[k(2)]] - positions_[ring[k(4)]]).norm();
-      if (one <= other) {
-        add(k(1), k(2), k(3));
-        add(k(1), k(3), k(4));
-      } else {
-        add(k(1), k(2), k(4));
-        add(k(2), k(3), k(4));
-      }
-    } else {
-      for (std::size_t i = 0; i < 6; i += 2) add(k(i), k(i + 1), k(i + 2));
-      add(k(0), k(2), k(4));
-    }
   }
 
   static std::uint64_t key(Index a, Index b) {
@@ -242,20 +161,6 @@ RefinedMesh refine(const TriangleMesh& mesh, const std::function<bool(const Refi
   }
   Refiner refiner(mesh);
   while (refiner.refine_once(wants_split, max_levels)) {
-  }
-  return refiner.finish();
-}
-
-RefinedMesh split_long_edges(const TriangleMesh& mesh, double longest, Index most_faces) {
-  if (!(longest > 0)) {
-    throw Error(ErrorCode::bad_usage, "the length that edges are split to must be above 0",
-                {.element = "longest", .value = fmt::format("{}", longest)});
-  }
-  Refiner refiner(mesh);
-  const auto most = static_cast<std::size_t>(std::max(most_faces, Index{0}));
-  for (const double share : round_shares) {
-    while (refiner.halve_edges(std::max(longest, share * refiner.longest_edge()), most)) {
-    }
   }
   return refiner.finish();
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "isopath/core/side_by_side.h"
 #include "isopath/plan/plan_report.h"
 #include "isopath/post/csv.h"
 #include "isopath/post/path_vtp.h"
@@ -107,13 +108,21 @@ std::string summary_json(const PlanResult& result) {
 }
 
 std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesystem::path& folder) {
-  std::vector<OutputFile> files = {{"summary.json", summary_json(result)},
-                                   {"impact.csv", impact_csv(result.impact.curve)},
-                                   {"tool.csv", tool_csv(result.tool)},
-                                   {"path.vtp", path_vtp(result.tool)},
-                                   {"job.yaml", job_yaml(result.job, folder)}};
+  std::vector<OutputFile> files;
+  OutputFile report{"report.html", {}};
+  side_by_side(
+      [&] {
+        files = {{"summary.json", summary_json(result)},
+                 {"impact.csv", impact_csv(result.impact.curve)},
+                 {"tool.csv", tool_csv(result.tool)},
+                 {"path.vtp", path_vtp(result.tool)},
+                 {"job.yaml", job_yaml(result.job, folder)}};
+      },
+      [&] {
+        if (result.job.report) report.content = plan_report(result);
+      });
   files.insert(files.end(), result.programs.begin(), result.programs.end());
-  if (result.job.report) files.push_back({"report.html", plan_report(result)});
+  if (result.job.report) files.push_back(std::move(report));
   return files;
 }
 

@@ -12,35 +12,36 @@ namespace {
 constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 std::string encode(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? alphabet[group >> (18 - 6 * k) & 63] : '=';
-  }
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* out = text.data();
+  std::size_t i = 0;
+  const auto put = [&](std::uint32_t group, int letters) {
+    for (int k = 0; k < letters; ++k) out[k] = alphabet[group >> (18 - 6 * k) & 63];
+    out += 4;
+  };
+  for (; i + 3 <= bytes.size(); i += 3)
+    put(std::uint32_t{bytes[i]} << 16 | std::uint32_t{bytes[i + 1]} << 8 | bytes[i + 2], 4);
+  if (bytes.size() - i == 1) put(std::uint32_t{bytes[i]} << 16, 2);
+  if (bytes.size() - i == 2) put(std::uint32_t{bytes[i]} << 16 | std::uint32_t{bytes[i + 1]} << 8, 3);
   return text;
 }
 
-void append_word(std::vector<std::uint8_t>& bytes, std::uint32_t word) {
-  for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
+/// The bytes of four-byte words, the lowest first on any machine.
+template <typename Word>
+std::vector<std::uint8_t> bytes_of(std::span<const Word> words) {
+  std::vector<std::uint8_t> bytes(4 * words.size());
+  std::uint8_t* out = bytes.data();
+  for (const Word value : words) {
+    const auto word = std::bit_cast<std::uint32_t>(value);
+    for (int k = 0; k < 4; ++k) out[k] = static_cast<std::uint8_t>(word >> (8 * k));
+    out += 4;
+  }
+  return bytes;
 }
 
 }  // namespace
 
-std::string base64_of(std::span<const float> values) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(4 * values.size());
-  for (float value : values) append_word(bytes, std::bit_cast<std::uint32_t>(value));
-  return encode(bytes);
-}
-
-std::string base64_of(std::span<const std::uint32_t> values) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(4 * values.size());
-  for (std::uint32_t value : values) append_word(bytes, value);
-  return encode(bytes);
-}
+std::string base64_of(std::span<const float> values) { return encode(bytes_of(values)); }
+std::string base64_of(std::span<const std::uint32_t> values) { return encode(bytes_of(values)); }
 
 }  // namespace isopath

@@ -12,11 +12,31 @@ namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+// The great circle from one axis to another.
+class AxisArc {
+ public:
+  AxisArc(const Vec3& a, const Vec3& b) : a_(a), b_(b), angle_(angle_between(a, b)), sine_(std::sin(angle_)) {}
+
+  Vec3 at(double u) const {
+    // Nearly parallel: the chord's midpoint differs from the arc by angle^2 / 8, below rounding here; nearly opposite:
+    // the great circle is not defined.
+    if (sine_ < 1e-8) return a_.dot(b_) > 0 ? ((1 - u) * a_ + u * b_).normalized() : (u < 0.5 ? a_ : b_);
+    return (std::sin((1 - u) * angle_) * a_ + std::sin(u * angle_) * b_) / sine_;
+  }
+
+ private:
+  Vec3 a_;
+  Vec3 b_;
+  double angle_;
+  double sine_;
+};
+
 // How far the point is from the move a to b, as a multiple of the tolerances.
-double excess(const ToolPoint& point, const ToolPoint& a, const ToolPoint& b, double chord, double angle) {
+double excess(const ToolPoint& point, const ToolPoint& a, const ToolPoint& b, const AxisArc& axes, double chord,
+              double angle) {
   const double u = nearest_on_segment(a.tip, b.tip, point.tip);
   const double distance = (point.tip - mix(a.tip, b.tip, u)).norm();
-  const double turn = angle_between(point.axis, axis_between(a.axis, b.axis, u));
+  const double turn = angle_between(point.axis, axes.at(u));
   // An axis tolerance of 0 asks for equal axes: 1e-15 is the rounding error of two unit vectors.
   return std::max(distance / chord, turn / std::max(angle, 1e-15));
 }
@@ -33,8 +53,9 @@ void keep_needed(const std::vector<ToolPoint>& points, std::size_t first, std::s
     progress.checkpoint();
     double worst = 1;
     std::size_t split = a;
+    const AxisArc axes(points[a].axis, points[b].axis);
     for (std::size_t i = a + 1; i < b; ++i) {
-      const double e = excess(points[i], points[a], points[b], chord, angle);
+      const double e = excess(points[i], points[a], points[b], axes, chord, angle);
       if (e > worst) {
         worst = e;
         split = i;
@@ -49,14 +70,7 @@ void keep_needed(const std::vector<ToolPoint>& points, std::size_t first, std::s
 
 }  // namespace
 
-Vec3 axis_between(const Vec3& a, const Vec3& b, double u) {
-  const double angle = angle_between(a, b);
-  const double sine = std::sin(angle);
-  // Nearly parallel: the chord's midpoint differs from the arc by angle^2 / 8, below rounding here; nearly opposite:
-  // the great circle is not defined.
-  if (sine < 1e-8) return a.dot(b) > 0 ? ((1 - u) * a + u * b).normalized() : (u < 0.5 ? a : b);
-  return (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / sine;
-}
+Vec3 axis_between(const Vec3& a, const Vec3& b, double u) { return AxisArc(a, b).at(u); }
 
 ToolPath thin_path(const ToolPath& path, double chord_tolerance, double axis_tolerance, const Progress& progress) {
   const std::vector<ToolPoint>& points = path.points;
