@@ -91,8 +91,8 @@ Job job_of(const PlanArguments& given) {
   if (given.unit) job.unit = unit_of(*given.unit);
   if (!given.sources.empty()) job.sources = parse_sources(given.sources);
   if (given.pattern) job.pattern = pattern_of(*given.pattern);
-  if (given.blend) job.blend = BlendForm::least;
-  if (given.blend_form) job.blend = blend_of(*given.blend_form);
+  if (given.blend) job.blend = Blending::least;
+  if (given.blend_form) job.blend = blending_of(*given.blend_form);
   if (!given.direction.empty()) job.planar_direction = Vec3(given.direction[0], given.direction[1], given.direction[2]);
   // each gives the distance between passes: what is given last, here, replaces what the file gives
   if (given.spacing || given.scallop) job.spacing = job.scallop = 0;
@@ -143,6 +143,9 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
                         result.job.scallop, cusps.mean, cusps.p99, cusps.max);
   }
   if (!result.patches.empty()) text += fmt::format("  patches          {}\n", result.patches.size());
+  if (result.spiral) {
+    text += fmt::format("  spiral           {}\n", text_of(*result.spiral, gap.area, w));
+  }
   if (result.smoothing) text += smoothing_text(result);
   text += fmt::format("  pieces           {}, lifts {}, links {:.4g} mm\n", f.pieces, f.lifts, f.links_length);
   text += fmt::format("results in {}{}\n", folder, result.job.report ? "; look at its report.html" : "");
@@ -174,8 +177,10 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
       ->default_str("auto");
   command.add_flag("--blend", given.blend,
                    "Blend the distances with the medial axis, so that the part gets one spiral");
-  command.add_option("--blend-form", given.blend_form, "Blend in this form: least, paper; or none")
-      ->default_str("least with --blend and for double spirals, else none");
+  command
+      .add_option("--blend-form", given.blend_form,
+                  "Blend in this form: least, paper; none; or auto: least where that makes a better spiral")
+      ->default_str("auto; least with --blend");
   command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")
       ->delimiter(',')
       ->expected(3)

@@ -116,7 +116,7 @@ TEST_F(JobFile, RoundTripKeepsEveryDigit) {
     if (seed % 3 == 1) {
       job.pattern = seed % 2 == 0 ? Pattern::spiral : Pattern::double_spiral;
       job.smooth = 0;
-      job.blend = seed % 4 < 2 ? BlendForm::least : BlendForm::paper;
+      job.blend = seed % 4 < 2 ? Blending::least : Blending::paper;
     }
     if (seed % 3 == 0) {
       if (job.pattern == Pattern::double_spiral) job.pattern.reset();

@@ -22,8 +22,7 @@ namespace {
 
 class NestedPlan : public testing::Test {
  protected:
-  static PlanResult plan(const TriangleMesh& mesh, std::optional<Pattern> pattern, std::optional<BlendForm> blend,
-                         double spacing) {
+  static PlanResult plan(const TriangleMesh& mesh, std::optional<Pattern> pattern, Blending blend, double spacing) {
     Job job;
     job.pattern = pattern;
     job.blend = blend;
@@ -48,21 +47,21 @@ TEST_F(NestedPlan, ShapesAreToldByTheirLoopsAndHandles) {
 TEST_F(NestedPlan, OneSpiralWhereTheDistanceHasTwoTops) {
   const TriangleMesh dumbbell =
       test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 2 && j < 6); });
-  const PlanResult result = plan(dumbbell, std::nullopt, BlendForm::least, 1);
+  const PlanResult result = plan(dumbbell, std::nullopt, Blending::least, 1);
   EXPECT_EQ(result.pattern, Pattern::spiral);
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_GE(result.gap.covered_fraction, 0.995);
 
-  const PlanResult there_and_back = plan(dumbbell, Pattern::double_spiral, std::nullopt, 1);
-  EXPECT_EQ(there_and_back.job.blend, BlendForm::least) << "needs nested levels, whether asked for or not";
+  const PlanResult there_and_back = plan(dumbbell, Pattern::double_spiral, Blending::automatic, 1);
+  EXPECT_EQ(there_and_back.job.blend, Blending::least) << "needs nested levels, whether asked for or not";
   EXPECT_EQ(there_and_back.figures.pieces, 1);
   EXPECT_EQ(there_and_back.figures.lifts, 0);
 }
 
 TEST_F(NestedPlan, AnAnnulusIsBlendedFromLoopToLoop) {
   const TriangleMesh mesh = test::planar_cells(12, 12, [](int i, int j) { return i < 4 || i >= 8 || j < 4 || j >= 8; });
-  const PlanResult result = plan(mesh, Pattern::double_spiral, BlendForm::least, 0.8);
+  const PlanResult result = plan(mesh, Pattern::double_spiral, Blending::least, 0.8);
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_GE(result.gap.covered_fraction, 0.995);
@@ -78,7 +77,7 @@ TEST_F(NestedPlan, AnAnnulusOfUnevenWidthIsCutOpen) {
   EXPECT_NEAR(opened->area(), mesh.area(), 1e-9);
   EXPECT_FALSE(opened_annulus(test::open_cylinder(24, 8, 5, 4), 0.5, quiet)) << "of even width";
 
-  const PlanResult result = plan(mesh, Pattern::spiral, BlendForm::least, 0.5);
+  const PlanResult result = plan(mesh, Pattern::spiral, Blending::least, 0.5);
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_LE(result.gap.max, 1.05);
@@ -88,7 +87,7 @@ TEST_F(NestedPlan, AnAnnulusOfUnevenWidthIsCutOpen) {
 TEST_F(NestedPlan, SeveralHolesAreCutOpenAndGetOneSpiral) {
   const TriangleMesh mesh =
       test::planar_cells(14, 6, [](int i, int j) { return j < 2 || j > 3 || (i != 3 && i != 10); });
-  const PlanResult result = plan(mesh, Pattern::spiral, BlendForm::least, 0.4);
+  const PlanResult result = plan(mesh, Pattern::spiral, Blending::least, 0.4);
   EXPECT_EQ(result.pattern, Pattern::spiral);
   EXPECT_EQ(result.figures.pieces, 1);
   EXPECT_EQ(result.figures.lifts, 0);
@@ -100,7 +99,7 @@ TEST_F(NestedPlan, SeveralHolesAreCutOpenAndGetOneSpiral) {
 }
 
 TEST_F(NestedPlan, HandlesGetATwoWayCurveAndAWarning) {
-  const PlanResult result = plan(test::torus(12, 8, 3, 1), Pattern::spiral, BlendForm::least, 0.7);
+  const PlanResult result = plan(test::torus(12, 8, 3, 1), Pattern::spiral, Blending::least, 0.7);
   EXPECT_EQ(result.pattern, Pattern::two_way);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(),

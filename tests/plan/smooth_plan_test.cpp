@@ -143,6 +143,7 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     Job job = smooth_job_on(mesh, name);
     job.pattern = pattern;
     job.spacing = 4;
+    job.blend = Blending::none;
     const PlanResult sharp = run_plan(job);
     job.smooth = 4;
     const PlanResult smooth = run_plan(job);
@@ -221,7 +222,7 @@ TEST(SmoothPlan, RefusesWhatItCannotSmooth) {
     EXPECT_THROW(job.validate(), Error);
   }
   job.pattern = Pattern::spiral;
-  job.blend = BlendForm::least;
+  job.blend = Blending::least;
   EXPECT_THROW(job.validate(), Error);
 }
 

@@ -9,31 +9,10 @@
 namespace isopath {
 namespace {
 
-/// A spiral or meander within this of area / spacing leaves a two-way curve nothing to win.
-constexpr double good_length_ratio = 1.12;
 /// One lift is worth so much of the length.
 constexpr double similar_length = 1.05;
 /// The right angles of joints are worth so much of it.
 constexpr double worthwhile_length = 1.1;
-
-/// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell.
-Pattern pattern_of(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
-                   Progress& progress) {
-  double largest = 0;
-  for (const double value : values) {
-    if (value < infinity) largest = std::max(largest, value);
-  }
-  std::vector<double> levels;
-  if (largest > 0) {
-    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) levels.push_back(share * largest);
-  }
-  double closed = 0;
-  double open = 0;
-  for (const Contour& contour : isolines(mesh, function, levels, {}, progress)) {
-    (contour.closed ? closed : open) += length_of(mesh, contour);
-  }
-  return closed >= open ? Pattern::spiral : Pattern::meander;
-}
 
 Index lifts_of(const ImpactCurve& curve) { return curve.points.back().piece; }
 
@@ -60,6 +39,24 @@ double reached_area(const TriangleMesh& mesh, std::span<const double> values) {
 
 }  // namespace
 
+Pattern pattern_by_isolines(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
+                            Progress& progress) {
+  double largest = 0;
+  for (const double value : values) {
+    if (value < infinity) largest = std::max(largest, value);
+  }
+  std::vector<double> levels;
+  if (largest > 0) {
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) levels.push_back(share * largest);
+  }
+  double closed = 0;
+  double open = 0;
+  for (const Contour& contour : isolines(mesh, function, levels, {}, progress)) {
+    (contour.closed ? closed : open) += length_of(mesh, contour);
+  }
+  return closed >= open ? Pattern::spiral : Pattern::meander;
+}
+
 ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
                         const ImpactOptions& options, Progress& progress,
                         const std::function<const SurfaceFunction&()>& two_way_function) {
@@ -77,7 +74,7 @@ ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& functio
     if (options.close_gaps) finish_plan(mesh, tried, plan.plan, progress);
     return plan;
   };
-  ChosenPlan first = draft(pattern_of(mesh, function, values, progress));
+  ChosenPlan first = draft(pattern_by_isolines(mesh, function, values, progress));
   if (lifts_of(first.plan.curve) > 0) {
     ChosenPlan other = draft(Pattern::two_way);
     return finished(clearly_better(other.plan.curve, first.plan.curve) ? std::move(other) : std::move(first));

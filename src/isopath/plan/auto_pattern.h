@@ -14,6 +14,14 @@ struct ChosenPlan {
   ImpactPlan plan;
 };
 
+/// A spiral or meander within this of area / spacing leaves a two-way curve nothing to win.
+inline constexpr double good_length_ratio = 1.12;
+
+/// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell. `values` are the
+/// function's at the vertices. Throws Error(cancelled) on request.
+Pattern pattern_by_isolines(const TriangleMesh& mesh, const SurfaceFunction& function, std::span<const double> values,
+                            Progress& progress = Progress::none());
+
 /// The plan for a user who names no pattern: a spiral where most of the isolines' length is in closed ones, else a
 /// meander. Where that lifts, or is longer than 1.12 area / spacing, a two-way curve is planned besides, and taken if
 /// it lifts less often and is at most 5 % longer, or lifts as often and the other one is more than 10 % longer; lengths

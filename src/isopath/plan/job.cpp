@@ -23,9 +23,6 @@ constexpr std::array<std::pair<std::string_view, std::optional<Pattern>>, 8> pat
      {"trochoidal", Pattern::trochoidal},
      {"planar", Pattern::planar}}};
 
-constexpr std::array<std::pair<std::string_view, std::optional<BlendForm>>, 3> blends = {
-    {{"none", std::nullopt}, {"least", BlendForm::least}, {"paper", BlendForm::paper}}};
-
 [[noreturn]] void refuse_name(const char* what, std::string_view name, const std::vector<std::string_view>& allowed) {
   throw Error(ErrorCode::bad_usage, fmt::format("unknown {}", what),
               {.value = fmt::format("'{}'", name), .advice = fmt::format("allowed: {}", fmt::join(allowed, ", "))});
@@ -47,10 +44,10 @@ Value value_named(const char* what, std::string_view name, const std::array<Valu
 }
 
 void validate_blend(const Job& job) {
-  const bool nested = job.blend || job.pattern == Pattern::double_spiral;
+  const bool nested = form_of(job.blend) || job.pattern == Pattern::double_spiral;
   if (nested && job.partition.by != PartitionBy::none)
     refuse("partition", std::string(name_of(job.partition.by)), "patches are neither blended nor double spirals");
-  if (!job.blend) return;
+  if (!form_of(job.blend)) return;
   if (job.pattern == Pattern::planar || job.pattern == Pattern::meander) {
     refuse("blend", fmt::format("with the pattern {}", name_of(job.pattern)),
            "blended isolines are closed curves: take spiral, double-spiral, contour or two-way");
@@ -138,20 +135,28 @@ std::optional<Pattern> pattern_of(std::string_view name) {
   refuse_name("pattern", name, names);
 }
 
-std::string_view name_of(const std::optional<BlendForm>& form) {
-  for (const auto& [name, choice] : blends) {
-    if (choice == form) return name;
+std::string_view name_of(Blending blending) {
+  switch (blending) {
+    case Blending::automatic:
+      return "auto";
+    case Blending::none:
+      return "none";
+    case Blending::least:
+      return "least";
+    case Blending::paper:
+      return "paper";
   }
   return "";
 }
 
-std::optional<BlendForm> blend_of(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const auto& [known, choice] : blends) {
-    if (known == name) return choice;
-    names.push_back(known);
-  }
-  refuse_name("blend", name, names);
+std::optional<BlendForm> form_of(Blending blending) {
+  if (blending == Blending::least) return BlendForm::least;
+  if (blending == Blending::paper) return BlendForm::paper;
+  return std::nullopt;
+}
+
+Blending blending_of(std::string_view name) {
+  return value_named("blend", name, std::array{Blending::automatic, Blending::none, Blending::least, Blending::paper});
 }
 
 Process process_of(std::string_view name) {
@@ -201,7 +206,7 @@ void Job::validate() const {
   if (smooth > 0 && pattern == Pattern::trochoidal) {
     refuse("smooth", fmt::format("{}", smooth), "circles have no corners to smooth: leave it out");
   }
-  if (smooth > 0 && (blend || pattern == Pattern::double_spiral)) {
+  if (smooth > 0 && (form_of(blend) || pattern == Pattern::double_spiral)) {
     refuse("smooth", fmt::format("{}", smooth), "blended distances and double spirals are not smoothed: leave it out");
   }
   validate_scallop(*this);

@@ -20,6 +20,17 @@ enum class LengthUnit { millimetre, centimetre, metre, inch };
 std::string_view name_of(LengthUnit unit);  ///< mm, cm, m, inch
 double millimetres_in(LengthUnit unit);
 
+/// Whether distances are blended with the medial axis, and how.
+enum class Blending {
+  automatic,  ///< in the least form where that makes a better spiral, see plan/spiral_choice.h, and a double spiral
+  none,       ///< not at all
+  least,      ///< BlendForm::least
+  paper,      ///< BlendForm::paper
+};
+std::string_view name_of(Blending blending);  ///< auto, none, least, paper
+/// The form that was asked for; none where none was, or where the planner is to choose.
+std::optional<BlendForm> form_of(Blending blending);
+
 /// Everything a planning run needs. A job file holds the same, and a run writes the job it used beside its results.
 /// Lengths in mm, angles in radians, feeds in mm/min.
 struct Job {
@@ -28,9 +39,8 @@ struct Job {
   std::vector<SourceSpec> sources = {SourceSpec{}};  ///< where distances are measured from; joined. Default: auto
   std::optional<Pattern> pattern = {};               ///< none: what suits the part, see plan/auto_pattern.h
   /// Blends the distances with the medial axis, so that the isolines of a part without holes are nested closed curves:
-  /// for the patterns contour, spiral, double-spiral and two-way. None is `least` for a double spiral, which needs
-  /// them.
-  std::optional<BlendForm> blend = {};
+  /// for the patterns contour, spiral, double-spiral and two-way.
+  Blending blend = Blending::automatic;
   Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
@@ -59,13 +69,10 @@ struct Job {
 std::string_view name_of(const std::optional<Pattern>& pattern);
 /// Its inverse. Throws Error(bad_usage) listing the allowed names.
 std::optional<Pattern> pattern_of(std::string_view name);
-/// The name a job file gives a blend: `none` for none.
-std::string_view name_of(const std::optional<BlendForm>& form);
-/// Its inverse. Throws Error(bad_usage) listing the allowed names.
-std::optional<BlendForm> blend_of(std::string_view name);
 /// Throw Error(bad_usage) listing the allowed names.
 Process process_of(std::string_view name);
 LengthUnit unit_of(std::string_view name);
+Blending blending_of(std::string_view name);
 PartitionBy partition_of(std::string_view name);
 void check_program_format(std::string_view name);
 

@@ -97,7 +97,7 @@ Job read_job(const fs::path& path) {
     if (!job.sources.back().file.empty()) job.sources.back().file = resolved(job.sources.back().file, folder);
   });
   fields.read_text("pattern", [&](const std::string& text) { job.pattern = pattern_of(text); });
-  fields.read_text("blend", [&](const std::string& text) { job.blend = blend_of(text); });
+  fields.read_text("blend", [&](const std::string& text) { job.blend = blending_of(text); });
   fields.read("planar_direction", job.planar_direction);
   fields.read("spacing", job.spacing, {.least = 0});
   fields.read("scallop", job.scallop, {.least = 0});

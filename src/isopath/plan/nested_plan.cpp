@@ -7,7 +7,6 @@
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"
-#include "isopath/impact/finish_curve.h"
 #include "isopath/mesh/refine.h"
 #include "isopath/plan/hole_bridges.h"
 
@@ -83,7 +82,8 @@ std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spac
   return opened_holes(mesh, spacing, progress);
 }
 
-NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress) {
+NestedField nested_field(BlendForm form, const ExactField& distance, double spacing, double radius,
+                         Progress& progress) {
   progress.stage("blending");
   const TriangleMesh& mesh = distance.mesh();
   const NestedShape shape = nested_shape_of(mesh);
@@ -92,8 +92,7 @@ NestedField nested_field(const Job& job, const ExactField& distance, double spac
     throw Error(ErrorCode::no_plan, "a part with several holes or handles has no nested levels",
                 {.advice = "cut it open first, or take the pattern two-way, which needs none"});
   }
-  const double radius = job.min_radius > 0 ? job.min_radius : default_radius_in_spacings * spacing;
-  BlendedField blended = blend(distance, {.form = *job.blend, .spacing = spacing, .radius = radius}, progress);
+  BlendedField blended = blend(distance, {.form = form, .spacing = spacing, .radius = radius}, progress);
   return {std::move(blended.values), blended.spacing};
 }
 

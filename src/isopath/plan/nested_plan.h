@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "isopath/contour/blend.h"
 #include "isopath/core/progress.h"
 #include "isopath/field/vertex_field.h"
-#include "isopath/plan/job.h"
 
 namespace isopath {
 
@@ -30,8 +30,9 @@ struct NestedField {
   double spacing = 0;          ///< that the levels are to have, mm
 };
 
-/// The function for a job with a blend, from the distances on a mesh that is fine enough (contour/blend_mesh.h).
-/// `spacing` is the one to keep. Throws Error(no_plan) for a part with more holes or handles, and what `blend` throws.
-NestedField nested_field(const Job& job, const ExactField& distance, double spacing, Progress& progress);
+/// The function with levels for a spiral, from the distances on a mesh that is fine enough (contour/blend_mesh.h).
+/// `spacing` is the one to keep, `radius` what corners will be rounded with, see BlendOptions. Throws Error(no_plan)
+/// for a part with more holes or handles, and what `blend` throws.
+NestedField nested_field(BlendForm form, const ExactField& distance, double spacing, double radius, Progress& progress);
 
 }  // namespace isopath

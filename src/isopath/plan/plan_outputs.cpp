@@ -65,6 +65,22 @@ nlohmann::ordered_json smoothing_json(const PlanResult& result) {
   return json;
 }
 
+nlohmann::ordered_json spiral_json(const PlanResult& result) {
+  const SpiralChoice& choice = *result.spiral;
+  nlohmann::ordered_json json = {{"blended", choice.blended},
+                                 {"why", text_of(choice, result.gap.area, result.spacing)}};
+  const auto add = [&](const char* name, const std::optional<CurveCost>& cost) {
+    if (!cost) return;
+    json[name] = {{"length", cost->length},
+                  {"lifts", cost->lifts},
+                  {"sharp_corners", cost->sharp_corners},
+                  {"finished", cost->finished}};
+  };
+  add("by_distance", choice.by_distance);
+  add("by_blend", choice.by_blend);
+  return json;
+}
+
 }  // namespace
 
 std::string summary_json(const PlanResult& result) {
@@ -102,6 +118,7 @@ std::string summary_json(const PlanResult& result) {
   if (result.job.min_radius > 0) summary["tight_places"] = tight_json(result);
   if (!result.patches.empty()) summary["patches"] = patches_json(result);
   if (result.scallop) summary["scallop"] = scallop_json(result);
+  if (result.spiral) summary["spiral"] = spiral_json(result);
   if (result.smoothing) summary["smoothing"] = smoothing_json(result);
   // a file may have any name, JSON only holds UTF-8
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

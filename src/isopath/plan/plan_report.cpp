@@ -90,6 +90,22 @@ ReportTable smoothing_table(const PlanResult& result) {
   return table;
 }
 
+ReportTable spiral_table(const PlanResult& result) {
+  const SpiralChoice& choice = *result.spiral;
+  ReportTable table{"Spiral",
+                    {{"levels", choice.blended ? "blended" : "by the distance alone", "",
+                      text_of(choice, result.gap.area, result.spacing) + "."}}};
+  const auto add = [&](const char* name, const std::optional<CurveCost>& cost) {
+    if (!cost) return;
+    table.rows.push_back({name, text(cost->length), "mm",
+                          fmt::format("{} lifts, {} sharp corners{}.", cost->lifts, cost->sharp_corners,
+                                      cost->finished ? "" : ", before its gaps are closed")});
+  };
+  add("by the distance alone", choice.by_distance);
+  add("blended", choice.by_blend);
+  return table;
+}
+
 /// The number of its patch at every vertex that is shown, counted from 1.
 std::vector<double> patches_at_vertices(const PlanResult& result) {
   const RefinedMesh& shown = result.display.refined;
@@ -147,6 +163,7 @@ std::string plan_report(const PlanResult& result) {
   data.tables = {figures_table(result), coverage_table(result)};
   if (result.scallop) data.tables.push_back(scallop_table(result));
   if (!result.patches.empty()) data.tables.push_back(patches_table(result));
+  if (result.spiral) data.tables.push_back(spiral_table(result));
   if (result.smoothing) data.tables.push_back(smoothing_table(result));
   data.histograms = {{.title = "Gap over the surface",
                       .unit = "mm",

@@ -17,6 +17,7 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/cover_field.h"
+#include "isopath/impact/finish_curve.h"
 #include "isopath/impact/level_spiral.h"
 #include "isopath/plan/auto_pattern.h"
 #include "isopath/plan/gap_choice.h"
@@ -125,7 +126,7 @@ struct Field {
 /// all of the medial axis. Each hole that distances are measured from adds a loop to that axis, longer than the hole's
 /// edge; passes that end at the hole follow only half of this edge.
 AutoLoops loops_for(const Job& job) {
-  return job.pattern == Pattern::two_way && !job.blend ? AutoLoops::longest : AutoLoops::all;
+  return job.pattern == Pattern::two_way && !form_of(job.blend) ? AutoLoops::longest : AutoLoops::all;
 }
 
 ExactField distances_on(const Part& part, const Job& job, const IntrinsicGeometry* metric, AutoLoops loops,
@@ -203,7 +204,7 @@ bool open_for_nesting(PlanResult& result, Field& field, Progress& progress) {
   const NestedShape shape = nested_shape_of(mesh);
   if (shape == NestedShape::disc) return true;
   std::optional<TriangleMesh> opened;
-  if (shape == NestedShape::annulus && result.job.blend == BlendForm::least)
+  if (shape == NestedShape::annulus && result.job.blend == Blending::least)
     opened = opened_annulus(mesh, result.spacing, progress);
   if (shape == NestedShape::holes) opened = opened_holes(mesh, result.spacing, progress);
   if (!opened) return shape == NestedShape::annulus;
@@ -220,6 +221,25 @@ bool open_for_nesting(PlanResult& result, Field& field, Progress& progress) {
   return true;
 }
 
+/// The function whose levels are nested closed curves, on a mesh that is fine enough for the distances and is made
+/// finer where its levels need it.
+Field nested_field_on(TriangleMesh fine, BlendForm form, PlanResult& result, Progress& progress) {
+  const double spacing = result.spacing;
+  const double radius = result.job.min_radius > 0 ? result.job.min_radius : default_radius_in_spacings * spacing;
+  TriangleMesh& mesh = result.part.mesh;
+  std::optional<IntrinsicGeometry> in_space;
+  NestedField nested;
+  for (int round = 0; round < 2; ++round) {
+    mesh = std::move(fine);
+    const Field field = field_of(result, in_space, progress);
+    nested = nested_field(form, static_cast<const ExactField&>(*field.function), spacing, radius, progress);
+    fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
+    if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
+  }
+  std::vector<double> values = nested.values;
+  return {std::make_unique<VertexField>(mesh, std::move(nested.values)), std::move(values), nested.spacing};
+}
+
 /// The function whose levels are nested closed curves, on a mesh made fine enough for it. A part that has none keeps
 /// the field it has, and a two-way curve is planned.
 Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
@@ -230,21 +250,9 @@ Field nested_field_of(PlanResult& result, Field field, Progress& progress) {
     result.pattern = Pattern::two_way;
     return field;
   }
-  const double spacing = result.spacing;
-  TriangleMesh& mesh = result.part.mesh;
-  std::optional<IntrinsicGeometry> in_space;
-  TriangleMesh fine = refine_for_blend(mesh, *field.function, spacing, progress);
-  NestedField nested;
-  for (int round = 0; round < 2; ++round) {
-    field.function.reset();
-    mesh = std::move(fine);
-    field = field_of(result, in_space, progress);
-    nested = nested_field(result.job, static_cast<const ExactField&>(*field.function), spacing, progress);
-    fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
-    if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
-  }
-  std::vector<double> values = nested.values;
-  return {std::make_unique<VertexField>(mesh, std::move(nested.values)), std::move(values), nested.spacing};
+  TriangleMesh fine = refine_for_blend(result.part.mesh, *field.function, result.spacing, progress);
+  field.function.reset();
+  return nested_field_on(std::move(fine), *form_of(result.job.blend), result, progress);
 }
 
 ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& progress) {
@@ -257,17 +265,21 @@ ImpactPlan plan_nested(const PlanResult& result, const Field& field, Progress& p
                       progress);
 }
 
+ImpactOptions options_of(const PlanResult& result, const IntrinsicGeometry* metric) {
+  return {.spacing = result.spacing,
+          .clearance = result.job.clearance,
+          .circle_radius = result.job.circle_radius,
+          .circle_step = result.job.circle_step,
+          .min_radius = result.job.min_radius,
+          .metric = metric};
+}
+
 /// The impact curve, with the pattern the job names or one that suits the part.
 void plan_curve(PlanResult& result, Field& field, const IntrinsicGeometry* metric, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
-  ImpactOptions options{.spacing = result.spacing,
-                        .clearance = result.job.clearance,
-                        .circle_radius = result.job.circle_radius,
-                        .circle_step = result.job.circle_step,
-                        .min_radius = result.job.min_radius,
-                        .metric = metric};
+  ImpactOptions options = options_of(result, metric);
   const bool smooth = result.job.smooth > 0;
-  if (result.job.blend) {
+  if (form_of(result.job.blend)) {
     const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
     options.pattern = result.pattern;
     result.impact = field.spacing > 0 && is_spiral ? plan_nested(result, field, progress)
@@ -296,6 +308,70 @@ void plan_curve(PlanResult& result, Field& field, const IntrinsicGeometry* metri
     result.smoothing = {repaired.gap_before, repaired.chosen, std::move(repaired.costs)};
   }
   append(result.warnings, result.impact.warnings);
+}
+
+/// A blended spiral with the part it is planned on; none where its levels are not nested closed curves.
+struct BlendedSpiral {
+  Part part;
+  ImpactPlan impact;
+  std::vector<double> levels;  ///< the function at the vertices
+  double spacing = 0;          ///< of its levels
+};
+std::optional<BlendedSpiral> blended_spiral(const PlanResult& result, const Field& field, Progress& progress) {
+  PlanResult trial;
+  trial.job = result.job;
+  trial.part = result.part;
+  trial.spacing = result.spacing;
+  try {
+    TriangleMesh fine = refine_for_blend(trial.part.mesh, *field.function, trial.spacing, progress);
+    Field nested = nested_field_on(std::move(fine), BlendForm::least, trial, progress);
+    ImpactPlan impact = plan_nested(trial, nested, progress);
+    return BlendedSpiral{std::move(trial.part), std::move(impact), std::move(nested.at_vertices), nested.spacing};
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::no_plan) throw;
+    return std::nullopt;
+  }
+}
+
+/// Puts a blended spiral in the place of the part and field that it was made from.
+void take(BlendedSpiral blended, PlanResult& result, Field& field) {
+  result.part = std::move(blended.part);
+  result.impact = std::move(blended.impact);
+  result.pattern = Pattern::spiral;
+  append(result.warnings, result.impact.warnings);
+  field.function = std::make_unique<VertexField>(result.part.mesh, blended.levels);
+  field.at_vertices = std::move(blended.levels);
+  field.spacing = blended.spacing;
+}
+
+/// Plans the spiral by the distance alone first, and a blended one if there is something to win. The curve is finished.
+void choose_spiral(PlanResult& result, Field& field, Progress& progress) {
+  const double spacing = result.spacing;
+  const double area = result.part.mesh.area();
+  SpiralChoice& choice = *result.spiral;
+  ImpactOptions options = options_of(result, nullptr);
+  options.close_gaps = false;  // a curve with gaps is shorter: it need not be closed to lose
+  {
+    const ImpactPlan draft = plan_impact(result.part.mesh, *field.function, options, progress);
+    choice.by_distance = cost_of(draft.curve, spacing, false);
+  }
+  std::optional<BlendedSpiral> blended;
+  if (!is_good_spiral(*choice.by_distance, area, spacing)) blended = blended_spiral(result, field, progress);
+  if (!blended) return plan_curve(result, field, nullptr, progress);
+
+  choice.by_blend = cost_of(blended->impact.curve, spacing, true);
+  const double cost = as_length(*choice.by_blend, spacing);
+  // where no pattern was named, a two-way curve may be shorter than either
+  const bool is_long = !result.job.pattern && choice.by_blend->length * spacing > good_length_ratio * area;
+  if (is_long || as_length(*choice.by_distance, spacing) < cost) {
+    const std::size_t n_warnings = result.warnings.size();
+    plan_curve(result, field, nullptr, progress);
+    choice.by_distance = cost_of(result.impact.curve, spacing, true);
+    if (as_length(*choice.by_distance, spacing) <= cost) return;
+    result.warnings.resize(n_warnings);
+  }
+  choice.blended = true;
+  take(*std::move(blended), result, field);
 }
 
 double length_ratio_of(const PlanResult& result, const IntrinsicGeometry* metric) {
@@ -362,17 +438,30 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   check_pass_count(field.at_vertices, result.spacing);
   check_facing(mesh, field.at_vertices, result.job.tool);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
-  if (result.job.blend) {
+  if (form_of(result.job.blend)) {
     result.pattern = result.job.pattern.value_or(Pattern::spiral);
     field = nested_field_of(result, std::move(field), progress);
   }
   clock.ends("field");
 
+  if (may_blend_spiral(result.job, mesh, field.at_vertices)) {
+    const double triangles = triangles_for_blend(mesh, result.spacing);
+    const bool is_spiral = result.job.pattern ||
+                           pattern_by_isolines(mesh, *field.function, field.at_vertices, progress) == Pattern::spiral;
+    if (is_spiral) result.spiral.emplace();
+    if (is_spiral && triangles > most_triangles_unasked) result.spiral->too_fine = triangles;
+  }
+  if (result.spiral && result.spiral->too_fine == 0) choose_spiral(result, field, progress);
+  const bool is_planned = !result.impact.curve.points.empty();
+
   // a curve is made of one thing after the other: a second processor gets the picture ready meanwhile
-  side_by_side([&] { plan_curve(result, field, metric ? &*metric : nullptr, progress); },
-               [&] {
-                 if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
-               });
+  side_by_side(
+      [&] {
+        if (!is_planned) plan_curve(result, field, metric ? &*metric : nullptr, progress);
+      },
+      [&] {
+        if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
+      });
   result.distances = std::move(field.at_vertices);
   if (result.job.report) {
     DisplaySurface& display = result.display;
@@ -418,7 +507,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   job.validate();
   PlanResult result;
   result.job = job;
-  if (job.pattern == Pattern::double_spiral && !job.blend) result.job.blend = BlendForm::least;
+  if (job.pattern == Pattern::double_spiral && !form_of(job.blend)) result.job.blend = Blending::least;
   StageClock clock(result.times);
 
   result.part = load_part(job.mesh, job.unit, progress);

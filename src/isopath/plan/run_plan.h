@@ -14,6 +14,7 @@
 #include "isopath/plan/output_folder.h"
 #include "isopath/plan/patch_plans.h"
 #include "isopath/plan/path_figures.h"
+#include "isopath/plan/spiral_choice.h"
 #include "isopath/tool/scallop.h"
 #include "isopath/tool/tool_path.h"
 
@@ -56,6 +57,7 @@ struct PlanResult {
   /// ball's metric.
   double length_ratio = 0;
   std::optional<ScallopFigures> scallop;      ///< where the job asks for one
+  std::optional<SpiralChoice> spiral;         ///< where the planner chose between spirals
   std::optional<SmoothingFigures> smoothing;  ///< where the job asks for it
   std::vector<TightPlace> tight;              ///< where the job asks for a smallest radius that could not be kept
   PathFigures figures;

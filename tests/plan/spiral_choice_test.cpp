@@ -1,0 +1,107 @@
+#include "isopath/plan/spiral_choice.h"
+
+#include <gtest/gtest.h>
+
+#include "isopath/plan/run_plan.h"
+#include "support/test_meshes.h"
+
+namespace isopath {
+namespace {
+
+class SpiralChoices : public testing::Test {
+ protected:
+  static PlanResult plan(const TriangleMesh& mesh, std::optional<Pattern> pattern, Blending blend, double spacing) {
+    Job job;
+    job.pattern = pattern;
+    job.blend = blend;
+    job.spacing = spacing;
+    const auto folder = std::filesystem::path(testing::TempDir());
+    job.mesh = folder / (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".off");
+    test::write_off(mesh, job.mesh);
+    job.report = false;
+    return run_plan(job);
+  }
+  static void expect_same_curve(const PlanResult& a, const PlanResult& b) {
+    ASSERT_EQ(a.impact.curve.points.size(), b.impact.curve.points.size());
+    for (std::size_t i = 0; i < a.impact.curve.points.size(); ++i)
+      ASSERT_EQ(a.impact.curve.points[i].position, b.impact.curve.points[i].position) << "point " << i;
+  }
+};
+
+TEST_F(SpiralChoices, CornersAndLiftsCountAsLength) {
+  const CurveCost smooth{.length = 100};
+  EXPECT_EQ(as_length(smooth, 2), 100);
+  EXPECT_EQ(as_length({.length = 100, .lifts = 1}, 2), 140);
+  EXPECT_EQ(as_length({.length = 100, .sharp_corners = 1}, 2), 110);
+}
+
+TEST_F(SpiralChoices, OnlyDiscsWithTheirWholeRimAsSource) {
+  const TriangleMesh disc = test::l_shape(3);
+  std::vector<double> distances(disc.n_vertices(), 1.0);
+  for (Index v = 0; v < disc.n_vertices(); ++v) {
+    if (disc.is_boundary_vertex(v)) distances[v] = 0;
+  }
+  Job job;
+  EXPECT_TRUE(may_blend_spiral(job, disc, distances));
+  job.pattern = Pattern::spiral;
+  EXPECT_TRUE(may_blend_spiral(job, disc, distances));
+  job.pattern = Pattern::meander;
+  EXPECT_FALSE(may_blend_spiral(job, disc, distances));
+  job.pattern = Pattern::spiral;
+  for (const Blending told : {Blending::none, Blending::least, Blending::paper}) {
+    job.blend = told;
+    EXPECT_FALSE(may_blend_spiral(job, disc, distances)) << name_of(told);
+  }
+  job.blend = Blending::automatic;
+  job.smooth = 1;
+  EXPECT_FALSE(may_blend_spiral(job, disc, distances));
+  job.smooth = 0;
+  distances[disc.from(disc.boundary_loops()[0][0])] = 0.1;
+  EXPECT_FALSE(may_blend_spiral(job, disc, distances)) << "a place of the rim is no source";
+  const TriangleMesh tube = test::open_cylinder(8, 3, 1, 1);
+  EXPECT_FALSE(may_blend_spiral(job, tube, std::vector<double>(tube.n_vertices(), 0.0)));
+}
+
+TEST_F(SpiralChoices, WhatIsChosenCostsLess) {
+  const TriangleMesh l = test::l_shape(12);
+  const TriangleMesh dumbbell =
+      test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 3 && j < 5); });
+  for (const TriangleMesh* mesh : {&l, &dumbbell}) {
+    for (const std::optional<Pattern> pattern : {std::optional(Pattern::spiral), std::optional<Pattern>()}) {
+      const PlanResult result = plan(*mesh, pattern, Blending::automatic, 1);
+      ASSERT_TRUE(result.spiral && result.spiral->by_distance && result.spiral->by_blend);
+      const double by_distance = as_length(*result.spiral->by_distance, 1);
+      const double by_blend = as_length(*result.spiral->by_blend, 1);
+      EXPECT_EQ(result.spiral->blended, by_blend < by_distance);
+      const CurveCost taken = cost_of(result.impact.curve, 1, true);
+      EXPECT_EQ(as_length(taken, 1), result.spiral->blended ? by_blend : by_distance);
+      EXPECT_TRUE(result.spiral->blended || result.spiral->by_distance->finished) << "compared as it is";
+      EXPECT_EQ(result.job.blend, Blending::automatic) << "the job stays as it was given";
+    }
+  }
+}
+
+TEST_F(SpiralChoices, AChosenBlendIsTheOneThatMayBeAskedFor) {
+  const TriangleMesh l = test::l_shape(12);
+  const PlanResult chosen = plan(l, Pattern::spiral, Blending::automatic, 1);
+  ASSERT_TRUE(chosen.spiral && chosen.spiral->blended);
+  const PlanResult asked = plan(l, Pattern::spiral, Blending::least, 1);
+  EXPECT_FALSE(asked.spiral) << "nothing was left to choose";
+  expect_same_curve(chosen, asked);
+  EXPECT_EQ(chosen.distances, asked.distances);
+  EXPECT_EQ(chosen.figures.lifts, 0);
+  EXPECT_GE(chosen.gap.covered_fraction, 0.999);
+}
+
+TEST_F(SpiralChoices, PartsThatWouldTakeLongAreNotBlendedUnasked) {
+  const TriangleMesh square = test::planar_cells(10, 10, [](int, int) { return true; });
+  constexpr double spacing = 0.18;
+  ASSERT_GT(triangles_for_blend(square, spacing), most_triangles_unasked);
+  const PlanResult chosen = plan(square, Pattern::spiral, Blending::automatic, spacing);
+  ASSERT_TRUE(chosen.spiral);
+  EXPECT_EQ(chosen.spiral->too_fine, triangles_for_blend(square, spacing));
+  expect_same_curve(chosen, plan(square, Pattern::spiral, Blending::none, spacing));
+}
+
+}  // namespace
+}  // namespace isopath
