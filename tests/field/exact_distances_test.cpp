@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/list_propagation.h"
 #include "support/random_sources.h"
 #include "support/slow_exact.h"
 #include "support/test_meshes.h"
@@ -65,14 +68,50 @@ TEST(ExactDistances, AreStraightOnAFlatRegularGrid) {
   }
 }
 
+/// Calls work with n threads, however many processors there are.
+template <class Work>
+auto with_threads(int n, Work&& work) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
+  return tbb::task_arena(n).execute(work);
+}
+
 TEST(ExactDistances, DoNotDependOnTheNumberOfThreads) {
   const TriangleMesh wavy = wavy_sheet(60, 1, 0.1, 6, 5, 2);
-  const auto with_threads = [&](std::size_t n) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
-    return exact_distances(wavy, one_vertex(wavy, 100));
+  const auto distances = [&] { return exact_distances(wavy, one_vertex(wavy, 100)); };
+  const std::vector<double> alone = with_threads(1, distances);
+  for (const int n : {2, 3, 8}) EXPECT_EQ(with_threads(n, distances), alone) << n << " threads";
+}
+
+/// A square of n by n unit cells, n even: its left half and the mirror image of that.
+TriangleMesh mirrored_square(Index n) {
+  TriangleSoup soup = planar_grid(n, n, n, n).soup();
+  for (std::size_t f = 0; f < soup.triangles.size(); f += 2) {
+    const Index corner = soup.triangles[f][0];
+    if (corner % (n + 1) < n / 2) continue;
+    soup.triangles[f] = {corner, corner + 1, corner + n + 1};
+    soup.triangles[f + 1] = {corner + 1, corner + n + 2, corner + n + 1};
+  }
+  return TriangleMesh(std::move(soup));
+}
+
+TEST(ExactDistances, TiesDoNotDependOnTheNumberOfThreads) {
+  constexpr Index n = 96;  // its fronts are long enough to be shared
+  const TriangleMesh square = mirrored_square(n);
+  const IntrinsicGeometry geometry(square);
+  SourceSet sides;
+  for (const Index column : {0, n}) {
+    for (Index row = 0; row <= n; row += 12) sides.add_vertex(square, row * (n + 1) + column);
+  }
+  const auto roots = [&] {
+    ListPropagation propagation(square, geometry, true);
+    propagation.start(source_fronts(square, geometry, sides));
+    propagation.run(infinity, Progress::none());
+    return propagation.vertex_roots();
   };
-  const std::vector<double> alone = with_threads(1);
-  for (const std::size_t n : {2, 3, 8}) EXPECT_EQ(with_threads(n), alone) << n << " threads";
+  const std::vector<Index> alone = with_threads(1, roots);
+  for (int again = 0; again < 3; ++again) {
+    for (const int threads : {2, 8}) ASSERT_EQ(with_threads(threads, roots), alone) << threads << " threads";
+  }
 }
 
 TEST(ExactDistances, AreExactUpToTheStopDistance) {

@@ -1,10 +1,10 @@
 #include "isopath/field/list_propagation.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -17,8 +17,8 @@ namespace {
 constexpr double widest_slit = 1e-9;
 /// Rises less than any direction is known to.
 constexpr double least_slope = 1e-20;
-/// So few items are not worth waking another thread for.
-constexpr std::size_t worth_sharing = 32;
+/// Shares of a thread in a round.
+constexpr std::size_t lists_at_a_time = 16;
 constexpr std::size_t vertices_at_a_time = 16;
 /// Items are fetched into the cache this many places before their turn.
 constexpr std::size_t ahead = 4;
@@ -45,14 +45,6 @@ double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) 
   return sum / std::max<Index>(mesh.n_edges(), 1);
 }
 
-/// Calls work(first, past) for parts of [0, n), at the same time; at_least of them are worth it.
-template <class Work>
-void share(std::size_t n, std::size_t at_least, Work&& work) {
-  if (n < at_least) return work(0, n);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, at_least / 2),
-                    [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
-}
-
 }  // namespace
 
 ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain)
@@ -66,7 +58,6 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       source_at_(mesh.n_vertices(), no_index),
       fans_(retain ? mesh.n_halfedges() : 0),
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
-      workshops_(retain),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
       rounding_(geometry.rounding()) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
@@ -97,10 +88,17 @@ std::size_t ListPropagation::window_bytes() const {
   return bytes;
 }
 
+std::size_t ListPropagation::propagated() const {
+  std::size_t windows = 0;
+  for (const Workshop& workshop : workshops_) windows += workshop.propagated;
+  return windows;
+}
+
 void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limits) {
   limits_ = limits;
   margin_ = rounding_ + 2 * limits.accuracy;
-  WindowBlocks& blocks = workshops_.local().blocks;
+  Workshop& workshop = workshops_.emplace_back(retain_);
+  WindowBlocks& blocks = workshop.blocks;
   struct Arriving {
     Index place;
     Index front;
@@ -154,24 +152,31 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
       block->least = std::min(block->least, std::max(turned.min_distance(), 0.0));
     }
     put_down(place, from_corner, block);
-    push_halfedge(place, block->least);
+    push_halfedge(place, block->least, workshop);
   }
   const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
   std::stable_sort(edge_sources_.begin(), edge_sources_.end(), by_edge);
 }
 
-void ListPropagation::push_halfedge(Index halfedge, double least) {
+void ListPropagation::push_halfedge(Index halfedge, double least, Workshop& workshop) {
   const Index bucket = std::max(bucket_, static_cast<Index>(least / bucket_width_));
-  if (bucket >= sites_[halfedge].bucket) return;
-  sites_[halfedge].bucket = bucket;
-  if (bucket >= static_cast<Index>(halfedges_.size())) halfedges_.resize(bucket + 1);
-  halfedges_[bucket].push_back(halfedge);
+  const std::atomic_ref<Index> known(sites_[halfedge].bucket);
+  Index before = known.load(std::memory_order_relaxed);
+  do {
+    if (bucket >= before) return;
+  } while (!known.compare_exchange_weak(before, bucket, std::memory_order_relaxed));
+  if (bucket >= static_cast<Index>(workshop.halfedges.size())) workshop.halfedges.resize(bucket + 1);
+  workshop.halfedges[bucket].push_back(halfedge);
 }
 
 void ListPropagation::offer_vertex(const Offer& offer) {
   const double distance = std::max(offer.distance, 0.0);
-  if (!(distance < distances_[offer.vertex])) return;
   VertexState& state = states_[offer.vertex];
+  if (!(distance < distances_[offer.vertex])) {
+    // Of two ways as short as each other the same one must be kept, whichever thread found its way first.
+    if (distance > distances_[offer.vertex] || state.bucket == not_waiting) return;
+    if (offer.arrival.halfedge >= state.arrival.halfedge) return;
+  }
   distances_[offer.vertex] = distance;
   state.root = offer.root;
   state.arrival = offer.arrival;
@@ -248,7 +253,7 @@ void ListPropagation::find_fans(Index vertex, Handed& handed) {
   });
 }
 
-void ListPropagation::send_fan(const Fan& fan, Workshop& workshop, Handed& handed) {
+void ListPropagation::send_fan(const Fan& fan, Workshop& workshop) {
   const Site& outgoing = sites_[fan.outgoing];
   const Site& opposite = sites_[TriangleMesh::next(fan.outgoing)];
   const Index place = waiting_place(TriangleMesh::next(fan.outgoing));
@@ -269,7 +274,7 @@ void ListPropagation::send_fan(const Fan& fan, Workshop& workshop, Handed& hande
   block->size = 1;
   block->least = window.min_distance();
   put_down(place, from_corner, block);
-  handed.sent.emplace_back(place, block->least);
+  push_halfedge(place, block->least, workshop);
 }
 
 void ListPropagation::Workshop::make_sides(std::size_t n) {
@@ -386,7 +391,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     KeptList* list = workshop.keep(windows, n);
     list->next = std::exchange(kept_[h], list);
   }
-  crossing.n_windows = static_cast<Index>(n);
+  workshop.propagated += n;
   if (n > 0 && site.twin != no_index) {
     workshop.make_sides(n);  // merging and remembering may have divided windows
     double* side_of_begin = workshop.sides[0].data();
@@ -395,15 +400,14 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     const Index corner = sites_[previous].tail;
     if (apex.distance < distances_[corner]) {
       __builtin_prefetch(&states_[corner], 1);
-      crossing.apex_distance = apex.distance;
-      crossing.apex_arrival = arrival_at_apex(windows, apex, triangle, previous);
+      Offer& offer = workshop.offers.emplace_back();
+      offer = {corner, no_index, apex.distance, arrival_at_apex(windows, apex, triangle, previous)};
       if (retain_) {
-        crossing.apex_root = static_cast<Index>(windows.root[apex.window]);
-        crossing.apex_arrival.error = windows.error[apex.window];
+        offer.root = static_cast<Index>(windows.root[apex.window]);
+        offer.arrival.error = windows.error[apex.window];
       }
     }
-    const auto send = [&](auto&& cross_to, Index leaving, Feeder feeder, std::size_t at_most, Index& reached,
-                          double& least) {
+    const auto send = [&](auto&& cross_to, Index leaving, Feeder feeder, std::size_t at_most) {
       const Index entering = waiting_place(leaving);
       if (entering == no_index || at_most == 0) return;
       WindowBlock* block = workshop.blocks.take(at_most);
@@ -411,12 +415,11 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
                                                 workshop.blocks.arrays(block), block->least));
       if (block->size == 0) return workshop.blocks.give_back(block);
       block->depth = crossing.depth + 1;
-      reached = entering;
-      least = block->least;
       put_down(entering, feeder, block);
+      push_halfedge(entering, block->least, workshop);
     };
-    send(cross_to_left, previous, from_next, apex.n_left, crossing.left, crossing.left_least);
-    send(cross_to_right, next, from_previous, apex.n_right, crossing.right, crossing.right_least);
+    send(cross_to_left, previous, from_next, apex.n_left);
+    send(cross_to_right, next, from_previous, apex.n_right);
   }
   if (owner != nullptr) workshop.blocks.give_back(owner);
 }
@@ -454,17 +457,7 @@ WindowArrays ListPropagation::merged(const WindowArrays& windows, std::size_t& n
   return to;
 }
 
-void ListPropagation::commit(const Crossing& crossing) {
-  if (crossing.apex_distance < infinity) {
-    offer_vertex({sites_[TriangleMesh::prev(crossing.halfedge)].tail, crossing.apex_root, crossing.apex_distance,
-                  crossing.apex_arrival});
-  }
-  if (crossing.left != no_index) push_halfedge(crossing.left, crossing.left_least);
-  if (crossing.right != no_index) push_halfedge(crossing.right, crossing.right_least);
-  propagated_ += static_cast<std::size_t>(crossing.n_windows);
-}
-
-void ListPropagation::run_vertices() {
+void ListPropagation::run_vertices(Team& team) {
   active_.clear();
   for (const Index v : std::exchange(vertices_[bucket_], {})) {
     if (states_[v].bucket != bucket_) continue;
@@ -473,25 +466,23 @@ void ListPropagation::run_vertices() {
   }
   const std::size_t n_parts = (active_.size() + vertices_at_a_time - 1) / vertices_at_a_time;
   if (handed_.size() < n_parts) handed_.resize(n_parts);
-  share(n_parts, worth_sharing / vertices_at_a_time, [&](std::size_t first, std::size_t past) {
-    Workshop& workshop = workshops_.local();
+  team.share(n_parts, 1, [&](std::size_t first, std::size_t past, std::size_t member) {
+    Workshop& workshop = workshops_[member];
     for (std::size_t part = first; part < past; ++part) {
       Handed& handed = handed_[part];
       handed.offers.clear();
       handed.fans.clear();
-      handed.sent.clear();
       const std::size_t end = std::min(active_.size(), (part + 1) * vertices_at_a_time);
       for (std::size_t i = part * vertices_at_a_time; i < end; ++i) {
         if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
         relax_edges(active_[i], handed);
         find_fans(active_[i], handed);
       }
-      for (const Fan& fan : handed.fans) send_fan(fan, workshop, handed);
+      for (const Fan& fan : handed.fans) send_fan(fan, workshop);
     }
   });
   for (std::size_t part = 0; part < n_parts; ++part) {
     for (const Offer& offer : handed_[part].offers) offer_vertex(offer);
-    for (const auto& [place, least] : handed_[part].sent) push_halfedge(place, least);
   }
 }
 
@@ -513,43 +504,75 @@ void ListPropagation::fetch(const Crossing& crossing) const {
   }
 }
 
-void ListPropagation::run_lists() {
-  const std::vector<Index> waiting = std::exchange(halfedges_[bucket_], {});
-  crossings_.clear();
-  // All are taken before one crosses: what crosses may be put down where another one waits.
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    if (i + ahead < waiting.size()) __builtin_prefetch(&sites_[waiting[i + ahead]], 1);
-    const Index h = waiting[i];
-    Site& site = sites_[h];
-    if (site.bucket != bucket_) continue;
-    site.bucket = not_waiting;
-    Crossing& crossing = crossings_.emplace_back();
-    crossing.halfedge = h;
-    for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(site.waiting[k], nullptr);
-    if (site.memory > 0 || --site.memory > -lists_without_memory) continue;
-    memories_.emplace_back().reset(site.length, snap_width(site.length));
-    site.memory = static_cast<Index>(memories_.size());
+bool ListPropagation::take(Index halfedge, Crossing& crossing, Workshop& workshop) {
+  Site& site = sites_[halfedge];
+  // A half-edge may be noted twice in a bucket: once long ago, before it was called from a nearer one.
+  Index noted = bucket_;
+  if (!std::atomic_ref<Index>(site.bucket).compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed)) {
+    return false;
   }
-  share(crossings_.size(), worth_sharing, [&](std::size_t first, std::size_t past) {
-    Workshop& workshop = workshops_.local();
+  crossing.halfedge = halfedge;
+  crossing.depth = std::numeric_limits<Index>::max();
+  for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(site.waiting[k], nullptr);
+  if (site.memory <= 0 && --site.memory <= -lists_without_memory) workshop.crowded.push_back(halfedge);
+  return true;
+}
+
+void ListPropagation::run_lists(Team& team) {
+  waiting_.clear();
+  for (Workshop& workshop : workshops_) {
+    if (bucket_ >= static_cast<Index>(workshop.halfedges.size())) continue;
+    std::vector<Index>& noted = workshop.halfedges[bucket_];
+    waiting_.insert(waiting_.end(), noted.begin(), noted.end());
+    noted.clear();
+  }
+  crossings_.resize(waiting_.size());
+  // All are taken before one crosses: what crosses may be put down where another one waits.
+  team.share(waiting_.size(), 4 * lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
+    Workshop& workshop = workshops_[member];
     for (std::size_t i = first; i < past; ++i) {
-      if (i + ahead < past) fetch(crossings_[i + ahead]);
-      cross(crossings_[i], workshop);
+      if (i + ahead < past) __builtin_prefetch(&sites_[waiting_[i + ahead]], 1);
+      if (!take(waiting_[i], crossings_[i], workshop)) crossings_[i].halfedge = no_index;
     }
   });
-  for (const Crossing& crossing : crossings_) commit(crossing);
+  for (Workshop& workshop : workshops_) {
+    for (const Index h : workshop.crowded) {
+      memories_.emplace_back().reset(sites_[h].length, snap_width(sites_[h].length));
+      sites_[h].memory = static_cast<Index>(memories_.size());
+    }
+    workshop.crowded.clear();
+  }
+  team.share(crossings_.size(), lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
+    Workshop& workshop = workshops_[member];
+    for (std::size_t i = first; i < past; ++i) {
+      if (i + ahead < past) fetch(crossings_[i + ahead]);
+      if (crossings_[i].halfedge != no_index) cross(crossings_[i], workshop);
+    }
+  });
+  for (Workshop& workshop : workshops_) {
+    for (const Offer& offer : workshop.offers) offer_vertex(offer);
+    workshop.offers.clear();
+  }
+}
+
+bool ListPropagation::are_waiting() const {
+  return std::any_of(workshops_.begin(), workshops_.end(), [&](const Workshop& workshop) {
+    return bucket_ < static_cast<Index>(workshop.halfedges.size()) && !workshop.halfedges[bucket_].empty();
+  });
 }
 
 void ListPropagation::run(double stop_distance, Progress& progress) {
+  Team team;
+  while (workshops_.size() < team.size()) workshops_.emplace_back(retain_);
   for (bucket_ = 0; bucket_ * bucket_width_ <= stop_distance; ++bucket_) {
-    const auto past = static_cast<Index>(std::max(halfedges_.size(), vertices_.size()));
-    if (bucket_ >= past) break;
-    halfedges_.resize(past);
+    std::size_t past = vertices_.size();
+    for (const Workshop& workshop : workshops_) past = std::max(past, workshop.halfedges.size());
+    if (bucket_ >= static_cast<Index>(past)) break;
     vertices_.resize(past);
-    while (!vertices_[bucket_].empty() || !halfedges_[bucket_].empty()) {
+    while (!vertices_[bucket_].empty() || are_waiting()) {
       progress.checkpoint();
-      if (!vertices_[bucket_].empty()) run_vertices();
-      if (!halfedges_[bucket_].empty()) run_lists();
+      if (!vertices_[bucket_].empty()) run_vertices(team);
+      if (are_waiting()) run_lists(team);
     }
   }
   progress.at(1);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "isopath/core/progress.h"
+#include "isopath/core/team.h"
 #include "isopath/field/edge_envelope.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
@@ -28,10 +29,12 @@ struct FanArc {
 /// Exact distances, by whole lists of windows that cross triangles (Qin et al. 2016), in rounds.
 ///
 /// Lists and vertices wait in buckets by their least distance. A round takes all of the nearest bucket: vertices hand
-/// their distance on along their edges and send out fans, lists are trimmed and cross their triangle, in parallel. What
-/// they found is put down afterwards in a fixed order; so the result does not depend on the number of threads. What is
-/// put down may belong into the same bucket again, and a vertex may improve after it sent its fan (label correcting):
-/// it then sends another. Nothing is dropped but rays that are longer than a way that is known; the shortest ways stay.
+/// their distance on along their edges and send out fans, lists are trimmed and cross their triangle, all at the same
+/// time: while they do, no distance changes. What they found for vertices is taken over afterwards, and of two ways as
+/// short as each other the one from the half-edge with the lower number; so the result does not depend on the number of
+/// threads. A list that is put down may belong into the same bucket again, and a vertex may improve after it sent its
+/// fan (label correcting): it then sends another. Nothing is dropped but rays that are longer than a way that is known;
+/// the shortest ways stay.
 class ListPropagation {
  public:
   /// `retain` keeps the windows of every edge.
@@ -53,7 +56,7 @@ class ListPropagation {
   std::vector<Index> vertex_roots() const;
   /// Per half-edge.
   std::vector<FanArc>& fans() { return fans_; }
-  std::size_t propagated() const { return propagated_; }
+  std::size_t propagated() const;
   /// Memory of the windows behind the front, in bytes.
   std::size_t window_bytes() const;
 
@@ -101,33 +104,24 @@ class ListPropagation {
     double low;
     double high;
   };
-  /// What some vertices hand on: to their neighbours, into their faces, and the half-edges where these fans wait.
+  /// What some vertices hand on: to their neighbours, and into their faces.
   struct Handed {
     std::vector<Offer> offers;
     std::vector<Fan> fans;
-    std::vector<std::pair<Index, double>> sent;
   };
   /// A list that crossed, with its windows behind it in memory.
   struct KeptList {
     KeptList* next;
     std::size_t size;
   };
-  /// One list on its way through a triangle, and what it found there.
+  /// One list on its way through a triangle.
   struct Crossing {
     Index halfedge = no_index;
-    Index depth = std::numeric_limits<Index>::max();  ///< see WindowBlock
-    Index left = no_index;                            ///< half-edge that got children, if any
-    Index right = no_index;
-    Index n_windows = 0;
-    double left_least = infinity;
-    double right_least = infinity;
-    double apex_distance = infinity;
-    Index apex_root = no_index;
-    Arrival apex_arrival;
+    Index depth = 0;  ///< see WindowBlock
     WindowBlock* lists[3] = {nullptr, nullptr, nullptr};
   };
   /// What a thread works with.
-  struct Workshop {
+  struct alignas(64) Workshop {
     explicit Workshop(bool is_tagged) : blocks(is_tagged), tagged(is_tagged) {}
 
     WindowArrays scratch(int which, std::size_t n);
@@ -137,6 +131,10 @@ class ListPropagation {
 
     WindowBlocks blocks;
     bool tagged;
+    std::vector<std::vector<Index>> halfedges;  ///< where lists wait, by bucket
+    std::vector<Offer> offers;                  ///< to the corners of triangles that were crossed
+    std::vector<Index> crowded;                 ///< half-edges that shall begin to remember
+    std::size_t propagated = 0;
     EdgeEnvelope envelope;
     std::vector<WindowBlock*> waiting;
     LargeVector<double> arrays[4];  ///< of scratch(): two for gather(), one for news(), one for merged()
@@ -146,7 +144,7 @@ class ListPropagation {
   /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
   enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };
 
-  void push_halfedge(Index halfedge, double least);
+  void push_halfedge(Index halfedge, double least, Workshop& workshop);
   void offer_vertex(const Offer& offer);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
   /// when windows are retained.
@@ -163,7 +161,7 @@ class ListPropagation {
   bool may_bend(Index vertex) const;
   void relax_edges(Index vertex, Handed& handed) const;
   void find_fans(Index vertex, Handed& handed);
-  void send_fan(const Fan& fan, Workshop& workshop, Handed& handed);
+  void send_fan(const Fan& fan, Workshop& workshop);
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
 
   void fetch_around(Index vertex) const;
@@ -182,10 +180,13 @@ class ListPropagation {
   void trim(WindowArrays& windows, std::size_t& n, Index halfedge, bool several, Workshop& workshop);
   /// What a list still adds to all that crossed the same half-edge before.
   WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
-  void commit(const Crossing& crossing);
 
-  void run_vertices();
-  void run_lists();
+  /// The lists that wait at a half-edge for this bucket; false when they were taken before.
+  bool take(Index halfedge, Crossing& crossing, Workshop& workshop);
+  /// True when lists wait for this bucket.
+  bool are_waiting() const;
+  void run_vertices(Team& team);
+  void run_lists(Team& team);
 
   void fetch_kept(Index edge) const;
   void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
@@ -204,18 +205,17 @@ class ListPropagation {
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained
   std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
-  std::vector<std::vector<Index>> halfedges_;           ///< by bucket
-  std::vector<std::vector<Index>> vertices_;
-  std::vector<EdgeEnvelope> memories_;  ///< of half-edges that are crossed again and again
-  std::vector<Index> active_;           ///< vertices
+  std::vector<std::vector<Index>> vertices_;            ///< by bucket
+  std::vector<EdgeEnvelope> memories_;                  ///< of half-edges that are crossed again and again
+  std::vector<Index> active_;                           ///< vertices
+  std::vector<Index> waiting_;                          ///< half-edges
   std::vector<Crossing> crossings_;
   std::vector<Handed> handed_;
-  tbb::enumerable_thread_specific<Workshop> workshops_;
+  std::deque<Workshop> workshops_;  ///< by member of the team
   Index bucket_ = 0;
   double bucket_width_ = 1;
   double rounding_ = 0;  ///< of coordinates and distances
   double margin_ = 0;
-  std::size_t propagated_ = 0;
 };
 
 }  // namespace isopath

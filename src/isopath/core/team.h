@@ -1,0 +1,72 @@
+#pragma once
+
+#include <tbb/task_group.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <type_traits>
+#include <vector>
+
+namespace isopath {
+
+/// Threads that stay awake from one parallel loop to the next.
+///
+/// A computation in thousands of short rounds spends as much on waking threads for each (10 µs) as on what they do. The
+/// members of a team wait busily instead, from the first loop that is worth sharing until the team ends: keep it for
+/// one computation. They are tasks of TBB: as many threads work as its limits allow, and where all are busy elsewhere
+/// the caller does the whole loop.
+class Team {
+ public:
+  Team();
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  /// Members, the caller among them: numbered from 0.
+  std::size_t size() const { return shares_.size(); }
+
+  /// Calls work(first, past, member) for parts of [0, n), at the same time, each of `at_a_time` items or fewer unless
+  /// the whole loop is too short to be worth sharing. Returns after the last of them; throws what one of them threw.
+  /// Member k begins with the k-th share of the items: where loops follow each other over the same things, it finds in
+  /// its cache what it left there. One loop at a time, always from the same thread, which is member 0.
+  template <class Work>
+  void share(std::size_t n, std::size_t at_a_time, const Work& work) {
+    const auto call = [](const void* what, std::size_t first, std::size_t past, std::size_t member) {
+      (*static_cast<const Work*>(what))(first, past, member);
+    };
+    run(n, at_a_time, call, &work);
+  }
+
+ private:
+  using Call = void (*)(const void* work, std::size_t first, std::size_t past, std::size_t member);
+
+  /// What a member begins with; the others help when they are done with theirs.
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> ticket;  ///< number of the loop in the upper half, of the next item in the lower
+    std::atomic<std::size_t> past;
+    Share();
+  };
+
+  void run(std::size_t n, std::size_t at_a_time, Call call, const void* work);
+  void help(std::size_t member);
+  /// Does one part of the loop; false when none is left.
+  bool do_part(std::size_t member);
+  bool do_part_of(Share& share, std::size_t member);
+
+  std::vector<Share> shares_;
+  alignas(64) std::atomic<std::size_t> done_ = 0;
+  alignas(64) std::atomic<Call> call_ = nullptr;
+  std::atomic<const void*> work_ = nullptr;
+  std::atomic<std::size_t> at_a_time_ = 1;
+  std::atomic<bool> over_ = false;
+  std::mutex lock_;
+  std::exception_ptr thrown_;
+  bool awake_ = false;
+  tbb::task_group_context context_;
+  tbb::task_group helpers_;
+};
+
+}  // namespace isopath
