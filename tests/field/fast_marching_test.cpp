@@ -93,10 +93,7 @@ TEST(FastMarching, IsNeverBelowTheExactDistanceFromAPointOnAConvexPlane) {
 TEST(FastMarching, ReachesWhatEdgesReachAndIsNeverLongerThanTheWayAlongThem) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
-    Rng rng(seed);
-    const TriangleMesh mesh =
-        random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
-    const SourceSet sources = random_sources(rng, mesh);
+    const auto [mesh, sources] = random_case(seed);
     const auto distance = fast_marching_distances(mesh, sources);
     const auto along_edges = graph_distances(mesh, sources);
     for (Index v = 0; v < mesh.n_vertices(); ++v) {

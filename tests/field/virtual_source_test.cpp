@@ -120,7 +120,19 @@ TEST(VirtualSource, IsLittleTooShortOnFlatParts) {
                                               : planar_star(static_cast<int>(3 + seed % 7), 5, 1);
     const SourceSet sources = random_sources(rng, mesh);
     const RelativeErrors errors = errors_against_exact(mesh, sources);
-    EXPECT_GT(errors.lowest, -0.06);
+    EXPECT_GT(errors.lowest, -5e-3);
+  }
+}
+
+TEST(VirtualSource, IsExactOnCoarseStars) {
+  // Faces as long as the star: all is next to a source, or to a reflex corner that a way bends at.
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh = planar_star(static_cast<int>(3 + seed % 7), 5, 1);
+    const RelativeErrors errors = errors_against_exact(mesh, random_sources(rng, mesh));
+    EXPECT_LT(errors.highest, rounding);
+    EXPECT_GT(errors.lowest, -1e-3);
   }
 }
 
@@ -202,10 +214,7 @@ TEST(VirtualSource, StaysAccurateOnThinTriangles) {
 TEST(VirtualSource, ReachesWhatEdgesReachAndIsNeverLongerThanTheWayAlongThem) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
-    Rng rng(seed);
-    const TriangleMesh mesh =
-        random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
-    const SourceSet sources = random_sources(rng, mesh);
+    const auto [mesh, sources] = random_case(seed);
     const auto distance = virtual_source_distances(mesh, sources);
     const auto along_edges = graph_distances(mesh, sources);
     for (Index v = 0; v < mesh.n_vertices(); ++v) {
@@ -219,10 +228,7 @@ TEST(VirtualSource, ReachesWhatEdgesReachAndIsNeverLongerThanTheWayAlongThem) {
 TEST(VirtualSource, DiffersAlongAnEdgeByItsLengthAtMost) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
-    Rng rng(seed);
-    const TriangleMesh mesh =
-        random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
-    const SourceSet sources = random_sources(rng, mesh);
+    const auto [mesh, sources] = random_case(seed);
     const auto distance = virtual_source_distances(mesh, sources);
     for (Index h = 0; h < 3 * mesh.n_faces(); ++h) {
       const double least = distance[mesh.from(h)];

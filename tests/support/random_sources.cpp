@@ -1,6 +1,7 @@
 #include "support/random_sources.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace isopath::test {
 
@@ -83,6 +84,13 @@ SourceSet random_sources(Rng& rng, const TriangleMesh& mesh, int most) {
   }
   if (sources.empty()) sources.add_point(random_supported_point(rng, mesh));
   return sources;
+}
+
+RandomCase random_case(std::uint64_t seed) {
+  Rng rng(seed);
+  TriangleMesh mesh = random_mesh(rng, {.closed = seed % 2 == 0, .holes = seed % 5 == 0, .slivers = seed % 3 == 0});
+  SourceSet sources = random_sources(rng, mesh);
+  return {std::move(mesh), std::move(sources)};
 }
 
 }  // namespace isopath::test

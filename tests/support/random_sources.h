@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "isopath/field/source.h"
@@ -13,5 +14,12 @@ std::vector<SurfacePoint> random_polyline(Rng& rng, const TriangleMesh& mesh, in
 std::vector<SurfacePoint> random_loop(Rng& rng, const TriangleMesh& mesh);
 /// One to `most` sources of every kind: points of all supports, polylines, loops, chains of edges, boundary loops.
 SourceSet random_sources(Rng& rng, const TriangleMesh& mesh, int most = 3);
+
+/// A small random mesh with random sources. By turns the mesh is open or closed, has holes, has slivers.
+struct RandomCase {
+  TriangleMesh mesh;
+  SourceSet sources;
+};
+RandomCase random_case(std::uint64_t seed);
 
 }  // namespace isopath::test

@@ -25,7 +25,7 @@ struct Arrival {
   float distance = std::numeric_limits<float>::infinity();
   float bent = no_centre;    ///< the part of it before the centre of the front: the way to where it bent last
   std::uint32_t source = 0;  ///< tells centres apart
-  std::uint32_t state = 0;   ///< the user's
+  std::uint32_t root = 0;    ///< tells apart what fronts may meet; with the user's marks in its lowest three bits
 };
 
 /// A front between two vertices that it has reached, in the plane that the faces on both sides of the edge unfold into:

@@ -9,6 +9,8 @@ namespace {
 /// Saddles by less than this angle send no fan of their own: on smooth surfaces every second vertex is one, and fronts
 /// stay whole there. In radians.
 constexpr float slight_saddle = 0.03F;
+/// From saddles by more than this, fronts are followed exactly at first.
+constexpr float sharp_saddle = 0.5F;
 
 /// The power of two next below the mean edge length: scaling with it rounds nothing.
 double unit_of(const TriangleMesh& mesh) {
@@ -49,7 +51,7 @@ FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(me
   std::uint32_t n_spokes = 0;
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
     Head& head = heads_[v];
-    head = {n_spokes, false, false};
+    head = {n_spokes, false, false, false};
     const Index start = mesh.outgoing(v);
     if (start == no_index) continue;
     const Vec3& middle = mesh.position(v);
@@ -77,9 +79,10 @@ FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(me
     head.closed = h == start;
     if (!head.closed) spokes_[n_spokes++] = {static_cast<std::uint32_t>(end), length, 1, 0};
     head.bends = total.exceeds(head.closed ? 2 : 1, slight_saddle);
+    head.bends_sharply = total.exceeds(head.closed ? 2 : 1, sharp_saddle);
     most_spokes_ = std::max<std::size_t>(most_spokes_, n_spokes - head.first);
   }
-  heads_[mesh.n_vertices()] = {n_spokes, false, false};
+  heads_[mesh.n_vertices()] = {n_spokes, false, false, false};
 }
 
 }  // namespace isopath

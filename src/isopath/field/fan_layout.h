@@ -28,11 +28,12 @@ class FanLayout {
     std::span<const FanSpoke> spokes;  ///< one more than faces where the vertex lies on the boundary
     bool closed;
     bool bends;  ///< a saddle or a reflex corner of the boundary by more than a little: shortest ways may bend here
+    bool bends_sharply;  ///< by so much that a strongly curved front may start here
   };
   Fan fan(std::uint32_t vertex) const {
     const Head& head = heads_[vertex];
     const std::uint32_t first = head.first;
-    return {{spokes_.data() + first, heads_[vertex + 1].first - first}, head.closed, head.bends};
+    return {{spokes_.data() + first, heads_[vertex + 1].first - first}, head.closed, head.bends, head.bends_sharply};
   }
   bool bends(std::uint32_t vertex) const { return heads_[vertex].bends; }
   /// Fetches a fan into the cache ahead of its use.
@@ -53,6 +54,7 @@ class FanLayout {
     std::uint32_t first;
     bool closed;
     bool bends;
+    bool bends_sharply;
   };
 
   double unit_ = 1;

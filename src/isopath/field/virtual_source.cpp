@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/bucket_queue.h"
 #include "isopath/field/edge_front.h"
-#include "isopath/field/source_faces.h"
+#include "isopath/field/straight_ways.h"
 
 namespace isopath {
 namespace {
@@ -22,9 +24,24 @@ constexpr float met = 0.2F;
 /// Width of a bucket of the queue in units of the layout.
 constexpr float bucket_step = 1;
 
-// What a vertex is up to; one that waits in the queue is not settled.
+/// Faces that straight ways from a vertex with a sharp bend may cross, and ways from an element of a source: enough for
+/// a radius of four and of nine edges. Of long sources each element gets its share.
+constexpr std::size_t most_faces_at_bend = 64;
+constexpr std::size_t most_faces_at_element = 256;
+constexpr std::size_t least_faces_at_element = 16;
+/// All of that together: this many faces, about a millisecond, and one more for every second vertex.
+constexpr std::size_t faces_at_least = 32768;
+/// A front would be at a vertex later than another one was by this share of the edge between: the two met on it.
+constexpr float overtaken = 0.01F;
+
+// Marks of a vertex, below its root; one that waits in the queue is not settled.
 constexpr std::uint32_t is_settled = 1;   ///< has handed its distance on
 constexpr std::uint32_t was_settled = 2;  ///< has done so before, with a longer one
+constexpr std::uint32_t is_seen = 4;      ///< a straight way from a source came
+constexpr std::uint32_t marks = 7;
+
+/// Fronts of one polyline or point, or from one sharp bend, have one root.
+constexpr std::uint32_t root_of(std::uint32_t number) { return number * (marks + 1); }
 
 /// An edge whose ends a front has reached: the vertex behind, and the one ahead that it may reach next, in the frame of
 /// the edge.
@@ -32,6 +49,7 @@ struct Door {
   const Arrival& tail;
   const Arrival& head;
   const Arrival& behind;
+  std::uint32_t corner;  ///< number of the vertex behind
   float length;
   FlatPoint back;   ///< where the vertex behind is, y < 0
   FlatPoint front;  ///< where the vertex ahead is, y > 0
@@ -56,6 +74,50 @@ float over_two_edges(const Door& door, const EdgeFront& direct, float crossing, 
   return at >= 0 && at <= length * way.y ? front.distance_of(ahead, way) : distance;
 }
 
+/// Where a front on its own is at two points.
+struct Alone {
+  float at_end;
+  float ahead;
+};
+
+/// Straight from the vertex behind, to an end of the edge and to the vertex ahead.
+Alone from_behind(const Door& door, bool to_head) {
+  const FlatPoint end{to_head ? door.length : 0, 0};
+  return {door.behind.distance + norm(end - door.back), door.behind.distance + norm(door.front - door.back)};
+}
+
+/// Through the edge from the vertex behind to the one end, to the other end and to the vertex ahead.
+Alone through_edge_behind(const Door& door, bool to_head) {
+  const FlatPoint start = to_head ? FlatPoint{0, 0} : door.back;
+  const FlatPoint end = to_head ? door.back : FlatPoint{door.length, 0};
+  const FlatPoint along = end - start;
+  const float length = norm(along);
+  const float inverse = 1 / length;
+  const EdgeFront front =
+      to_head ? fit_front(door.tail, door.behind, length) : fit_front(door.behind, door.head, length);
+  const auto reach = [&](FlatPoint point) {
+    const FlatPoint seen = point - start;
+    const FlatPoint ahead{inverse * dot(along, seen), inverse * cross(along, seen)};
+    return front.distance_of(ahead, front.ray_to(ahead));
+  };
+  return {reach({to_head ? door.length : 0, 0}), reach(door.front)};
+}
+
+/// Fronts of two roots came to the ends of an edge. Where they met on it, no circle fits both, and one that is fitted
+/// nevertheless arrives too early: then the one of them that came by the vertex behind counts, on its own. False where
+/// they did not meet there.
+bool fronts_met(const Door& door, float& distance) {
+  const bool circle_to_head = door.tail.source == door.corner;
+  const bool circle = circle_to_head || door.head.source == door.corner;
+  const bool by_tail = door.behind.source == door.tail.source;
+  if (!circle && by_tail == (door.behind.source == door.head.source)) return false;
+  const bool to_head = circle ? circle_to_head : by_tail;
+  const Alone alone = circle ? from_behind(door, to_head) : through_edge_behind(door, to_head);
+  if (!((to_head ? door.head : door.tail).distance < alone.at_end - overtaken * door.length)) return false;
+  distance = std::max(distance, alone.ahead);
+  return true;
+}
+
 /// Takes the front through an edge to the vertex ahead; false where that is no nearer than `known`.
 [[gnu::always_inline]] inline bool step_through(const Door& door, float known, Arrival& arrival) {
   const EdgeFront front = fit_front(door.tail, door.head, door.length);
@@ -69,10 +131,16 @@ float over_two_edges(const Door& door, const EdgeFront& direct, float crossing, 
   if (!(distance < wanted)) return false;
   const float expected = front.distance_of(door.back, front.ray_to(door.back));
   if (!(door.behind.distance <= expected - met * door.back.y)) return false;
-  if (expected > 0) distance = over_two_edges(door, front, at / ray.y, distance);
+  const bool two_roots = (door.tail.root ^ door.head.root) > marks;
+  if (!(two_roots && fronts_met(door, distance)) && expected > 0) {
+    distance = over_two_edges(door, front, at / ray.y, distance);
+  }
   if (!(distance < wanted)) return false;
-  const Arrival& nearer = 2 * at < width ? door.tail : door.head;
-  arrival = {distance, nearer.bent, nearer.source, 0};
+  // of two roots, the flatter front is the cautious choice
+  const bool tail_counts =
+      two_roots && door.tail.bent != door.head.bent ? door.tail.bent < door.head.bent : 2 * at < width;
+  const Arrival& origin = tail_counts ? door.tail : door.head;
+  arrival = {std::max(distance, 0.0F), origin.bent, origin.source, origin.root & ~marks};
   return true;
 }
 
@@ -83,16 +151,17 @@ class Propagation {
         fans_(fans),
         arrivals_(mesh.n_vertices(), Arrival{}),
         around_(fans.most_spokes()),
-        queue_(bucket_step) {}
+        queue_(bucket_step),
+        ways_(mesh) {}
 
   void start(const SourceSet& sources);
   void run(Progress& progress);
   std::vector<double> distances() const;
 
  private:
-  void start_at(std::uint32_t vertex, double distance, float bent, std::uint32_t source);
-  void start_from(const SourceElement& element, std::uint32_t source, float bent);
-  void start_beyond(const SourceElement& element, std::uint32_t source, float bent);
+  void start_at(std::uint32_t vertex, double distance, Arrival arrival);
+  void start_ways(std::span<const StraightWays::Way> ways, double before, const Arrival& arrival);
+  void start_from(const SourceSet& sources, std::uint32_t k, std::size_t most_faces);
   bool is_corner(const SourceSet& sources, const SourceElement& point) const;
   void settle(std::uint32_t vertex);
   void step_through_faces(const Arrival& here, const FanLayout::Fan& fan);
@@ -105,13 +174,16 @@ class Propagation {
   LargeVector<Arrival> arrivals_;
   std::vector<Arrival> around_;  ///< of the fan at hand
   BucketQueue queue_;
+  StraightWays ways_;
+  std::uint32_t n_chains_ = 0;  ///< of the sources: points, polylines and loops
 };
 
 [[gnu::always_inline]] inline void Propagation::hand_over(std::uint32_t vertex, const Arrival& arrival) {
   Arrival& held = arrivals_[vertex];
   if (!(arrival.distance < held.distance)) return;  // a vertex may be twice in a fan
-  const std::uint32_t revised = (held.state & is_settled) != 0 ? was_settled : 0;
-  held = {arrival.distance, arrival.bent, arrival.source, revised | (held.state & was_settled)};
+  std::uint32_t before = held.root & was_settled;
+  if ((held.root & is_settled) != 0) before = was_settled;
+  held = {arrival.distance, arrival.bent, arrival.source, arrival.root | before};
   queue_.push(arrival.distance, vertex);
 }
 
@@ -119,8 +191,8 @@ class Propagation {
 /// to the third vertex of the face, and along all edges.
 void Propagation::settle(std::uint32_t vertex) {
   Arrival& own = arrivals_[vertex];
-  if ((own.state & is_settled) != 0) return;
-  own.state |= is_settled;
+  if ((own.root & is_settled) != 0) return;
+  own.root |= is_settled;
   const FanLayout::Fan fan = fans_.fan(vertex);
   const std::span<const FanSpoke> spokes = fan.spokes;
   const std::size_t n = spokes.size();
@@ -128,11 +200,15 @@ void Propagation::settle(std::uint32_t vertex) {
   const Arrival here = own;
   step_through_faces(here, fan);
 
-  const float bent = fan.bends ? here.distance : here.bent;
-  const std::uint32_t source = fan.bends ? vertex : here.source;
+  Arrival along{0, here.bent, here.source, here.root & ~marks};
+  if (fan.bends) along = {0, here.distance, vertex, along.root};
+  if (fan.bends_sharply) {
+    along.root = root_of(n_chains_ + vertex);
+    start_ways(ways_.from_vertex(static_cast<Index>(vertex), most_faces_at_bend), here.distance * fans_.unit(), along);
+  }
   for (std::size_t i = 0; i < n; ++i) {
-    const float distance = here.distance + spokes[i].length;
-    if (distance < around_[i].distance * (1 - single_rounding)) hand_over(spokes[i].end, {distance, bent, source, 0});
+    along.distance = here.distance + spokes[i].length;
+    if (along.distance < around_[i].distance * (1 - single_rounding)) hand_over(spokes[i].end, along);
   }
 }
 
@@ -140,7 +216,7 @@ void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& 
   const std::size_t n = fan.spokes.size();
   const std::size_t n_faces = fan.closed ? n : std::max<std::size_t>(n, 1) - 1;
   // After a new distance the nearer end of a spoke may have been served through the old one.
-  const bool both_ways = (here.state & was_settled) != 0;
+  const bool both_ways = (here.root & was_settled) != 0;
   for (std::size_t i = 0; i < n_faces; ++i) {
     const bool to_left = around_[i].distance <= around_[i + 1 == n ? 0 : i + 1].distance;
     step_through_face(here, fan, i, to_left);
@@ -156,8 +232,10 @@ void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& 
   const std::size_t j = i + 1 == n ? 0 : i + 1;
   const std::size_t side = to_left ? i : j;  // through the spoke to this one
   const std::size_t ahead = to_left ? j : i;
-  if ((around_[side].state & is_settled) == 0) return;
+  if ((around_[side].root & is_settled) == 0) return;
   if (!(around_[ahead].distance > std::min(around_[side].distance, here.distance))) return;
+  // in sight of the sources, what a front of two of them would bring is less sure than what is there
+  if ((around_[ahead].root & is_seen) != 0 && here.source != around_[side].source) return;
   if (!fan.closed && side == (to_left ? 0 : n - 1)) return;  // nothing comes through a boundary edge
   const std::size_t behind = to_left ? (i == 0 ? n : i) - 1 : (j + 1 == n ? 0 : j + 1);
   const FanSpoke& face = spokes[i];
@@ -167,6 +245,7 @@ void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& 
   const Door door{here,
                   around_[side],
                   around_[behind],
+                  spokes[behind].end,
                   spokes[side].length,
                   {back_length * back.cosine, -back_length * back.sine},
                   {front_length * face.cosine, front_length * face.sine}};
@@ -176,55 +255,14 @@ void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& 
   hand_over(spokes[ahead].end, arrival);
 }
 
-void Propagation::start_at(std::uint32_t vertex, double distance, float bent, std::uint32_t source) {
-  const auto scaled = static_cast<float>(distance / fans_.unit());
-  if (scaled < arrivals_[vertex].distance * (1 - single_rounding)) hand_over(vertex, {scaled, bent, source, 0});
+/// Arrives at a vertex after so many mm.
+void Propagation::start_at(std::uint32_t vertex, double distance, Arrival arrival) {
+  arrival.distance = static_cast<float>(distance / fans_.unit());
+  if (arrival.distance < arrivals_[vertex].distance * (1 - single_rounding)) hand_over(vertex, arrival);
 }
 
-/// To the corners of the faces that hold an element; of a segment, to those beside it.
-void Propagation::start_from(const SourceElement& element, std::uint32_t source, float bent) {
-  const Vec3 a = position_of(mesh_, element.a);
-  const Vec3 along = position_of(mesh_, element.b) - a;
-  for (const Index face : faces_of(mesh_, element)) {
-    for (const Index vertex : mesh_.triangle(face)) {
-      const Vec3& p = mesh_.position(vertex);
-      if (element.kind == SourceElement::Kind::segment) {
-        const double at = (p - a).dot(along);
-        if (!(at >= 0 && at <= along.squaredNorm())) continue;
-      }
-      start_at(static_cast<std::uint32_t>(vertex), distance_in_face(mesh_, element, p), bent, source);
-    }
-  }
-}
-
-/// From a segment to the corners beyond the edges of its faces, exactly: so near to it, edges are too long for a front
-/// to be told from the distances at their ends.
-void Propagation::start_beyond(const SourceElement& element, std::uint32_t source, float bent) {
-  const Vec3 ends[] = {position_of(mesh_, element.a), position_of(mesh_, element.b)};
-  for (const Index face : faces_of(mesh_, element)) {
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-      const Index twin = mesh_.twin(h);
-      const Vec3& tail = mesh_.position(mesh_.from(h));
-      const Vec3 edge = mesh_.position(mesh_.to(h)) - tail;
-      const double length = edge.norm();
-      if (twin == no_index || !(length > 0)) continue;
-      // in the frame of the edge, the element's face above and the other below it
-      const auto unfold = [&](const Vec3& p, double side) {
-        const double x = (p - tail).dot(edge) / length;
-        return Vec2(x, side * (p - tail - x / length * edge).norm());
-      };
-      const Index corner = mesh_.from(TriangleMesh::prev(twin));
-      const Vec2 to = unfold(mesh_.position(corner), -1);
-      const Vec2 start = unfold(ends[0], 1);
-      const Vec2 along = unfold(ends[1], 1) - start;
-      const double squared = along.squaredNorm();
-      const double at = squared > 0 ? std::clamp((to - start).dot(along) / squared, 0.0, 1.0) : 0;
-      const Vec2 way = to - start - at * along;
-      const double crossing = to.x() * way.y() - to.y() * way.x();  // times way.y, below zero
-      if (crossing > 0 || crossing < length * way.y()) continue;
-      start_at(static_cast<std::uint32_t>(corner), way.norm(), bent, source);
-    }
-  }
+void Propagation::start_ways(std::span<const StraightWays::Way> ways, double before, const Arrival& arrival) {
+  for (const StraightWays::Way& way : ways) start_at(way.to, before + way.length, arrival);
 }
 
 /// Whether the front around a point of a source is a circle: at single points, ends and corners, not where two segments
@@ -247,22 +285,37 @@ bool Propagation::is_corner(const SourceSet& sources, const SourceElement& point
 void Propagation::start(const SourceSet& sources) {
   const auto n_vertices = static_cast<std::uint32_t>(mesh_.n_vertices());
   const std::span<const SourceElement> elements = sources.elements();
+  const auto n_elements = static_cast<std::uint32_t>(elements.size());
+  const std::size_t most_faces =
+      std::clamp((n_vertices / 2 + faces_at_least) / n_elements, least_faces_at_element, most_faces_at_element);
   // Segments first: where the end of one is as near, the front is straight.
-  for (std::uint32_t k = 0; k < elements.size(); ++k) {
-    if (elements[k].kind != SourceElement::Kind::segment) continue;
-    start_from(elements[k], n_vertices + k, no_centre);
-    start_beyond(elements[k], n_vertices + k, no_centre);
+  for (const auto kind : {SourceElement::Kind::segment, SourceElement::Kind::point}) {
+    n_chains_ = 0;
+    for (std::uint32_t k = 0; k < n_elements; ++k) {
+      const SourceElement& element = elements[k];
+      // a chain is a point, then a segment and a point by turns
+      const bool goes_on = k > 0 && (element.kind == SourceElement::Kind::segment ||
+                                     element.segment_before == static_cast<Index>(k) - 1);
+      if (!goes_on) ++n_chains_;
+      if (element.kind == kind) start_from(sources, k, most_faces);
+    }
   }
-  for (std::uint32_t k = 0; k < elements.size(); ++k) {
-    const SourceElement& point = elements[k];
-    if (point.kind != SourceElement::Kind::point) continue;
-    const Support support = support_of(mesh_, point.a);
-    const bool at_vertex = support.kind == Support::Kind::vertex;
-    const std::uint32_t source = at_vertex ? static_cast<std::uint32_t>(support.index) : n_vertices + k;
-    const float bent = is_corner(sources, point) ? 0 : no_centre;
-    if (at_vertex) start_at(source, 0, bent, source);
-    start_from(point, source, bent);
-    start_beyond(point, source, bent);
+}
+
+void Propagation::start_from(const SourceSet& sources, std::uint32_t k, std::size_t most_faces) {
+  const SourceElement& element = sources.elements()[k];
+  const bool is_point = element.kind == SourceElement::Kind::point;
+  const bool is_circle = is_point && is_corner(sources, element);
+  const Support support = is_point ? support_of(mesh_, element.a) : Support{};
+  const bool at_vertex = is_point && support.kind == Support::Kind::vertex;
+  Arrival arrival{0, is_circle ? 0 : no_centre, static_cast<std::uint32_t>(mesh_.n_vertices()) + k,
+                  root_of(n_chains_) | is_seen};
+  if (at_vertex) {
+    arrival.source = static_cast<std::uint32_t>(support.index);
+    start_at(arrival.source, 0, arrival);
+    if (is_circle) start_ways(ways_.from_vertex(support.index, most_faces), 0, arrival);
+  } else {
+    start_ways(ways_.from_element(element, most_faces), 0, arrival);
   }
 }
 
