@@ -13,8 +13,8 @@ class JoinedRings {
   JoinedRings(const std::vector<Ring>& rings, const std::vector<RingJoint>& joints)
       : rings_(rings), joints_(joints), cuts_of_(rings.size()), walked_(rings.size(), 0) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      for (Index side = 0; side < 2; ++side)
-        cuts_of_[joints[j].cuts[side].ring].push_back({static_cast<Index>(j), side});
+      for (std::size_t c = 0; c < joints[j].cuts.size(); ++c)
+        cuts_of_[joints[j].cuts[c].ring].push_back({static_cast<Index>(j), static_cast<Index>(c)});
     }
     for (auto& cuts : cuts_of_) {
       std::sort(cuts.begin(), cuts.end(), [&](const CutId& a, const CutId& b) { return cut(a).low < cut(b).low; });
@@ -32,10 +32,10 @@ class JoinedRings {
  private:
   struct CutId {
     Index joint = no_index;
-    Index side = 0;
+    Index cut = 0;
     bool operator==(const CutId&) const = default;
   };
-  const RingJoint::Cut& cut(const CutId& id) const { return joints_[id.joint].cuts[id.side]; }
+  const RingJoint::Cut& cut(const CutId& id) const { return joints_[id.joint].cuts[id.cut]; }
 
   SurfaceCurve whole(Index ring) {
     walked_[ring] = 1;
@@ -58,11 +58,10 @@ class JoinedRings {
       } else {
         rings_[ring].append_backward(curve, cut(at).low, cut(next).high);
       }
-      // a cut is left at its low end when it was come to forward
-      const bool at_high = !forward;
-      cross(curve, next, at_high);
-      at = {next.joint, 1 - next.side};
-      forward = joints_[next.joint].crosswise ? !at_high : at_high;
+      // a cut is left at its low end when it was come to forward, and forward from its high end
+      const RingJoint::End end = cross(curve, next, !forward);
+      at = {next.joint, end.cut};
+      forward = end.high;
     } while (!(at == start && forward));
     return curve;
   }
@@ -73,15 +72,18 @@ class JoinedRings {
     return cuts[(forward ? i + 1 : i + cuts.size() - 1) % cuts.size()];
   }
 
-  /// Appends the rung that starts at one end of a cut.
-  void cross(SurfaceCurve& curve, const CutId& from, bool at_high) const {
-    const RingJoint& joint = joints_[from.joint];
-    // rungs are numbered by their end on the first cut
-    const bool high_on_first = from.side == 1 && joint.crosswise ? !at_high : at_high;
-    SurfaceCurve rung = joint.rungs[high_on_first ? 1 : 0];
-    if (from.side == 1) rung.reverse();
-    curve.points.insert(curve.points.end(), rung.points.begin(), rung.points.end());
-    curve.positions.insert(curve.positions.end(), rung.positions.begin(), rung.positions.end());
+  /// Appends the rung that starts at one end of a cut; returns the end it leads to.
+  RingJoint::End cross(SurfaceCurve& curve, const CutId& from, bool high) const {
+    const RingJoint::End start{from.cut, high};
+    const auto& rungs = joints_[from.joint].rungs;
+    const auto found = std::find_if(rungs.begin(), rungs.end(),
+                                    [&](const RingJoint::Rung& r) { return r.from == start || r.to == start; });
+    SurfaceCurve way = found->curve;
+    const bool back = found->to == start;
+    if (back) way.reverse();
+    curve.points.insert(curve.points.end(), way.points.begin(), way.points.end());
+    curve.positions.insert(curve.positions.end(), way.positions.begin(), way.positions.end());
+    return back ? found->from : found->to;
   }
 
   const std::vector<Ring>& rings_;
