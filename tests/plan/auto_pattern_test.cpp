@@ -23,8 +23,9 @@ double way_of(const ImpactPlan& plan) {
 }
 
 TEST(auto_pattern, is_a_spiral_where_isolines_are_nested) {
+  // so many turns that half a pass more at either rim weighs little
   const TriangleMesh mesh = test::hemisphere(24, 72, 50);
-  EXPECT_EQ(choose(mesh, ExactField::compute(mesh, boundary_source(mesh)), 5).pattern, Pattern::spiral);
+  EXPECT_EQ(choose(mesh, ExactField::compute(mesh, boundary_source(mesh)), 2.5).pattern, Pattern::spiral);
 }
 
 TEST(auto_pattern, is_a_meander_where_isolines_are_side_by_side) {
