@@ -63,14 +63,15 @@ class TreeBuilder {
   void divide(const FacePart& part, std::span<const NearCandidate> above, double bound, Tree& tree) const {
     progress_.checkpoint();
     const Vec3 centre = part.centre();
-    WayBack nearest = best_way_back_among(data_, face_, centre, above);
-    if (nearest.distance > bound) nearest = best_way_back(data_, face_, centre);
+    const Ways ways = ways_from(centre, above);
+    double nearest = ways.least;
+    if (nearest > bound) nearest = best_way_back(data_, face_, centre).distance;
     const double radius = radius_of(corners_, part);
-    const std::vector<NearCandidate> kept = near(part, above, nearest.distance + 2 * radius);
-    const double here = nearest.distance + radius;
+    const std::vector<NearCandidate> kept = no_longer_than(nearest + 2 * radius, above, ways);
+    const double here = nearest + radius;
     const std::size_t node = tree.nodes.size();
     tree.nodes.emplace_back();
-    const bool small = radius <= nearest.distance;
+    const bool small = radius <= nearest;
     if (kept.size() <= few || small || part.depth >= most_halvings) {
       tree.nodes[node] = {Vec2::Zero(), here, static_cast<std::uint32_t>(tree.candidates.size()),
                           static_cast<std::uint32_t>(tree.candidates.size() + kept.size())};
@@ -105,10 +106,13 @@ class TreeBuilder {
     return {normal, normal.dot(middle), 0, 0};
   }
 
-  /// The candidates that give no more than `most` at the centre of a part.
-  std::vector<NearCandidate> near(const FacePart& part, std::span<const NearCandidate> candidates, double most) const {
-    const double limit = most + rounding * data_.geometry.size();
-    const Vec3 centre = part.centre();
+  /// How long the ways by some candidates are.
+  struct Ways {
+    std::vector<double> length;  ///< squared for sources
+    double least = infinity;     ///< of them and of those by the corners
+  };
+
+  Ways ways_from(const Vec3& centre, std::span<const NearCandidate> candidates) const {
     Vec2 on_edge[3];
     for (int i = 0; i < 3; ++i) {
       const Index h = 3 * face_ + i;
@@ -117,13 +121,33 @@ class TreeBuilder {
     }
     const Vec2 place = place_of(centre);
     const auto sources = data_.sources_in(face_);
-    std::vector<NearCandidate> kept;
+    Ways ways;
+    ways.length.reserve(candidates.size());
+    double least_squared = infinity;
     for (const NearCandidate candidate : candidates) {
       const unsigned i = candidate.where();
       const std::uint32_t k = candidate.number();
-      const bool is_near = i == NearCandidate::in_face ? squared_distance(sources[k], place) <= limit * limit
-                                                       : way_by(windows_[i][k], on_edge[i]) <= limit;
-      if (is_near) kept.push_back(candidate);
+      const bool is_source = i == NearCandidate::in_face;
+      const double way = is_source ? squared_distance(sources[k], place) : way_by(windows_[i][k], on_edge[i]);
+      double& least = is_source ? least_squared : ways.least;
+      least = std::min(least, way);
+      ways.length.push_back(way);
+    }
+    ways.least = std::min(ways.least, std::sqrt(least_squared));
+    for (int i = 0; i < 3; ++i) {
+      const double way = data_.distance[data_.mesh.triangle(face_)[i]] + (place_of(Vec3::Unit(i)) - place).norm();
+      ways.least = std::min(ways.least, way);
+    }
+    return ways;
+  }
+
+  std::vector<NearCandidate> no_longer_than(double most, std::span<const NearCandidate> candidates,
+                                            const Ways& ways) const {
+    const double limit = most + rounding * data_.geometry.size();
+    std::vector<NearCandidate> kept;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      const bool is_source = candidates[k].where() == NearCandidate::in_face;
+      if (ways.length[k] <= (is_source ? limit * limit : limit)) kept.push_back(candidates[k]);
     }
     return kept;
   }

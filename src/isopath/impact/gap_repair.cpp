@@ -98,7 +98,7 @@ class GapCloser {
       : linker_(linker), mesh_(linker.mesh()), normals_(normals), curve_(curve), limits_(limits), progress_(progress) {
     double longest = 0;
     for (Index e = 0; e < mesh_.n_edges(); ++e) longest = std::max(longest, mesh_.edge_length(e));
-    may_look_at_parts_ = !limits.metric && longest <= limits.spacing;
+    faces_are_small_ = longest <= limits.spacing;
   }
 
   /// Looks beside some places first, or everywhere.
@@ -108,8 +108,9 @@ class GapCloser {
     for (int round = 0; round < limits_.most_rounds; ++round) {
       const bool everywhere = round == 0 && !beside;
       if (!everywhere && closed.unsettled.empty()) break;
-      const auto [cover, spots] = everywhere ? look_everywhere() : look_beside(closed.unsettled);
-      const std::vector<Replacement> changes = bumps_and_loops(cover, spots, round);
+      const View view = everywhere ? look_everywhere() : look_beside(closed.unsettled);
+      const std::vector<OpenSpot>& spots = view.spots;
+      const std::vector<Replacement> changes = bumps_and_loops(view, round);
       closed.unsettled.clear();
       for (const OpenSpot& spot : spots) {
         for (const SpotCell& cell : spot.cells) closed.unsettled.push_back(cell.position);
@@ -127,6 +128,7 @@ class GapCloser {
   struct View {
     CoverField cover;
     std::vector<OpenSpot> spots;
+    bool of_parts = false;  ///< the cover holds only moves near the places looked at
   };
 
   View look_everywhere() {
@@ -140,16 +142,33 @@ class GapCloser {
     const double w = limits_.spacing;
     const NearPlaces changed(places);
     QuietProgress quiet(progress_);
-    CoverField cover = [&] {
-      if (!may_look_at_parts_) return distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);
-      std::vector<char> moves;
-      for (const ImpactPoint& point : curve_.points) moves.push_back(changed.any_near(point.position, 2.5 * w) ? 1 : 0);
-      return distance_from_part_of_cover(mesh_, curve_, moves, 2 * w, w, quiet);
-    }();
-    const bool everywhere = limits_.metric != nullptr;  // whose lengths are not those of places
+    // a metric's lengths are not those of places
+    const bool of_parts = limits_.metric == nullptr;
+    CoverField cover = of_parts
+                           ? distance_from_part_of_cover(mesh_, curve_, moves_near(changed, 2.5 * w), 2 * w, w, quiet)
+                           : distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);
     std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * w, progress_,
-                                             everywhere ? OpenSpotsNear{} : OpenSpotsNear{&changed, 1.2 * w});
-    return {std::move(cover), std::move(spots)};
+                                             of_parts ? OpenSpotsNear{&changed, 1.2 * w} : OpenSpotsNear{});
+    return {std::move(cover), std::move(spots), of_parts};
+  }
+
+  /// Marks the points of the curve within `reach` of a place, and both ends of moves that pass it.
+  std::vector<char> moves_near(const NearPlaces& places, double reach) const {
+    const double w = limits_.spacing;
+    std::vector<char> marked;
+    for (const ImpactPoint& point : curve_.points) marked.push_back(places.any_near(point.position, reach) ? 1 : 0);
+    for (std::size_t i = 1; i < marked.size(); ++i) {
+      const Vec3& from = curve_.points[i - 1].position;
+      const Vec3 way = curve_.points[i].position - from;
+      const int parts = static_cast<int>(std::ceil(way.norm() / w));
+      if (marked[i - 1] & marked[i] || curve_.points[i].kind != MoveKind::cover) continue;
+      for (int k = 1; k < parts; ++k) {
+        if (!places.any_near(from + k * way / parts, reach + 0.5 * w)) continue;
+        marked[i - 1] = marked[i] = 1;
+        break;
+      }
+    }
+    return marked;
   }
 
   double limit() const { return 0.5 * limits_.widest * limits_.spacing; }
@@ -164,12 +183,13 @@ class GapCloser {
     return turn_into(linker_, normals_, curve_, cover, spot, limits);
   }
 
-  std::vector<Replacement> bumps_and_loops(const CoverField& cover, const std::vector<OpenSpot>& spots, int round) {
+  std::vector<Replacement> bumps_and_loops(const View& view, int round) {
     const double w = limits_.spacing;
+    const CoverField& cover = view.cover;
     std::vector<Replacement> replacements;
     std::vector<char> wide(mesh_.n_faces(), 0);
     double farthest = 0;
-    for (const OpenSpot& spot : spots) {
+    for (const OpenSpot& spot : view.spots) {
       progress_.checkpoint();
       auto bump = bump_to(spot, cover, round);
       if (bump) replacements.push_back(*std::move(bump));
@@ -177,10 +197,19 @@ class GapCloser {
       farthest = std::max(farthest, spot.cells.front().distance);
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }
-    const double width = way_back_over_radius * limits_.radius;
-    for (const Contour& contour : loops_in(mesh_, cover.field, w, std::move(wide), farthest, progress_)) {
-      progress_.checkpoint();
-      replacements.push_back(detour_along(contour, linker_, normals_, curve_, cover, width));
+    const auto add_loops = [&](const CoverField& around) {
+      const double width = way_back_over_radius * limits_.radius;
+      for (const Contour& contour : loops_in(mesh_, around.field, w, std::move(wide), farthest, progress_)) {
+        progress_.checkpoint();
+        replacements.push_back(detour_along(contour, linker_, normals_, curve_, around, width));
+      }
+    };
+    // in large faces levels of the distance from some of the moves run on where others are nearer
+    if (farthest > first_loop * w && view.of_parts && !faces_are_small_) {
+      QuietProgress quiet(progress_);
+      add_loops(distance_from_cover(mesh_, curve_, w, quiet));
+    } else {
+      add_loops(cover);
     }
     return replacements;
   }
@@ -191,7 +220,7 @@ class GapCloser {
   ImpactCurve& curve_;
   const GapLimits& limits_;
   Progress& progress_;
-  bool may_look_at_parts_ = false;
+  bool faces_are_small_ = false;
 };
 
 }  // namespace

@@ -30,21 +30,22 @@ class SpotSearch {
 
   /// What may be farther than the limit is halved until it is small, or certainly farther and small enough.
   void search(Index face, std::vector<SpotCell>& cells) const {
-    for (const Index v : mesh_.triangle(face)) {
-      if (!std::isfinite(field_.value_at_vertex(v))) return;
-    }
     const IntrinsicGeometry& geometry = field_.geometry();
     const Vec2 apex = geometry.apex(3 * face);
     const FaceCorners corners = {Vec3::Zero(), Vec3(geometry.length(3 * face), 0, 0), Vec3(apex.x(), apex.y(), 0)};
     const FaceCorners in_space = corners_of(mesh_, face);
     std::vector<FacePart> parts{FacePart::whole(face)};
+    const bool is_large = near_.places && radius_of(in_space, parts[0]) > near_.radius;
+    for (const Index v : mesh_.triangle(face)) {
+      if (!is_large && !std::isfinite(field_.value_at_vertex(v))) return;
+    }
     while (!parts.empty()) {
       const FacePart part = parts.back();
       parts.pop_back();
       const SurfacePoint centre{face, part.centre()};
       const Vec3 position = position_of(mesh_, centre);
       const double size = near_.places ? radius_of(in_space, part) : 0;
-      if (near_.places && size <= near_.radius && !near_.places->any_near(position, near_.radius + size)) continue;
+      if (near_.places && !near_.places->any_near(position, near_.radius + size)) continue;
       const double radius = radius_of(corners, part);
       if (near_.places && size > near_.radius) {
         halve(corners, part, parts);
@@ -52,6 +53,7 @@ class SpotSearch {
       }
       const WayBack way = best_way_back(field_.data(), face, centre.barycentric);
       const double distance = way.distance;
+      if (!std::isfinite(distance)) continue;
       if (distance + radius <= limit_) continue;
       if (distance <= limit_ && may_be_bounded(part, radius) && bound_in_part(field_.data(), part, way) <= limit_)
         continue;
