@@ -125,14 +125,36 @@ TEST(LevelSpiral, WithFewerLevelsThanArmsIsARing) {
   }
 }
 
-TEST(LevelSpiral, RefusesTwoTops) {
-  const TriangleMesh mesh =
-      test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 2 && j < 6); });
-  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
-  const std::vector<double> values(field.vertex_distances().begin(), field.vertex_distances().end());
+TEST(LevelSpiral, GoesRoundIslandsOnItsWay) {
+  const Part dumbbell(test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 2 && j < 6); }),
+                      0.7);
+  const Part comb(test::planar_cells(20, 8, [](int i, int j) { return j < 1 || i % 7 < 6; }), 0.8);
+  for (const Part* part : {&dumbbell, &comb}) {
+    for (const int arms : {1, 2}) {
+      const ImpactPlan plan =
+          level_spiral(VertexField(part->mesh, part->values), {.arms = arms, .spacing = part->spacing});
+      SCOPED_TRACE(arms);
+      test::expect_valid(part->mesh, plan.curve);
+      EXPECT_EQ(test::pieces_of(plan.curve), 1);
+      const double spacing = part->spacing;
+      // a loop around what is left of an island's top, at most
+      EXPECT_LE(length_of(plan.curve, MoveKind::link), (part == &comb ? 2 : 1) * 4 * spacing);
+      const GapReport gap = measure_gap(part->mesh, plan.curve, spacing);
+      EXPECT_LE(gap.max, 1.05 * spacing);
+      EXPECT_GE(gap.covered_fraction, 0.999);
+      // passes through the neck for all levels of the far side would be a third more
+      EXPECT_LE(length_of(plan.curve, MoveKind::cover), 1.25 * part->mesh.area() / spacing);
+      const Vec3 ends = plan.curve.points.front().position - plan.curve.points.back().position;
+      EXPECT_EQ(ends.norm() < 1e-9, arms == 2);
+    }
+  }
+}
+
+TEST(LevelSpiral, RefusesOpenLevels) {
+  const TriangleMesh mesh = test::planar_grid(8, 8, 8, 8);
   try {
-    level_spiral(VertexField(mesh, values), {.spacing = 0.7});
-    FAIL() << "two tops were taken for one";
+    level_spiral(height_field(mesh, Vec3::UnitX()), {.spacing = 0.7});
+    FAIL() << "lines from edge to edge were taken for nested curves";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::no_plan);
   }

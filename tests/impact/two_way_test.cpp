@@ -156,6 +156,28 @@ TEST(two_way, is_a_closed_curve_on_every_component) {
   EXPECT_EQ(test::lifts_of(plan.curve), 1);
 }
 
+TEST(two_way, inserts_rings_into_a_curve_that_keeps_its_ends) {
+  const TriangleMesh mesh = test::planar_grid(20, 20, 20, 20);
+  const SurfaceLocator locator(mesh);
+  const SurfaceLinker linker(mesh, locator);
+  const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
+  const std::vector<double> levels = {4.5, 5.5};
+  const std::vector<Contour> rings = isolines(mesh, field, levels);
+  SurfaceCurve line;  // beside the outer one of them
+  for (int i = 1; i < 40; ++i) line.add(mesh, locator.nearest(Vec3(0.5 * i, 3.5, 0)).at);
+  const std::vector<SurfaceCurve> joined = joined_to_curve(linker, line, rings, 1);
+  ASSERT_EQ(joined.size(), 1U);
+  EXPECT_EQ(joined[0].positions.front(), line.positions.front());
+  EXPECT_EQ(joined[0].positions.back(), line.positions.back());
+  // each joint takes out two cuts of 0.18 and adds two rungs of 1
+  const double all = length_of(line) + length_of(mesh, rings[0]) + length_of(mesh, rings[1]);
+  EXPECT_NEAR(length_of(joined[0]), all + 2 * (2 - 2 * 0.18), 1e-6);
+
+  const std::vector<SurfaceCurve> alone = joined_to_curve(linker, line, {}, 1);
+  ASSERT_EQ(alone.size(), 1U);
+  EXPECT_EQ(alone[0].positions, line.positions);
+}
+
 TEST(two_way, walks_every_pass_but_for_its_cuts) {
   const TriangleMesh disc = test::flat_disc(72, 12, 24);
   const ExactField field = from_vertex(disc, 0);

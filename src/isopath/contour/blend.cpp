@@ -111,7 +111,7 @@ class LeastBlend {
     for (Index v = 0; v < mesh_.n_vertices(); ++v) {
       if (spokes_[v].end.valid()) result.values[v] += raise[v];
     }
-    leave_one_top(mesh_, roots_, result.values);
+    leave_one_top(mesh_, all_roots(), result.values);
     result.spacing = spacing_;
     result.n_levels = n_levels_;
     result.root = top_root_;
@@ -133,6 +133,9 @@ class LeastBlend {
   /// How steeply what is raised falls off along the axis: steeper than the distance itself, or a single pull would
   /// reach as far as that rises.
   static constexpr double axis_fall = 1.5;
+  /// An island that is farther than this from the rest, in spacings, stays one: to raise the way takes two passes over
+  /// it for every level, to join a ring by a joint costs less than two spacings.
+  static constexpr double longest_way = 2;
   /// How far what is raised beyond pulls is smoothed, and how much lower that may leave it in either round.
   static constexpr double smoothing_in_spacings = 0.25;
   static constexpr double most_smoothed_off[] = {0.2, 0.1};
@@ -254,7 +257,14 @@ class LeastBlend {
     return radius_ / spacing_ * (1 / std::sin(std::max(between - turned, 0.01)) - 1);
   }
 
-  /// Raises the axis where it falls on the way to the root, island by island, and spreads what is raised.
+  /// Those of the components and of the islands that stay.
+  std::vector<Index> all_roots() const {
+    std::vector<Index> all = roots_;
+    all.insert(all.end(), islands_.begin(), islands_.end());
+    return all;
+  }
+
+  /// Raises the axis where it falls on a short way to a root, island by island, and spreads what is raised.
   void raise_axis() {
     const double noise = 0.1 * spacing_;
     for (int round = 0; round < 50; ++round) {
@@ -263,40 +273,49 @@ class LeastBlend {
       std::vector<double> height(wanted_.size());
       for (Index v = 0; v < mesh_.n_vertices(); ++v)
         height[v] = crest_[v] > -infinity ? std::max({crest_[v], wanted_[v], distance_[v]}) : distance_[v];
-      const Flood flood = flood_from(mesh_, roots_, height);
+      const Flood flood = flood_from(mesh_, all_roots(), height);
       std::vector<Index> top(height.size(), no_index);  // of each island, at the lowest vertex of the way there
       for (Index v = 0; v < mesh_.n_vertices(); ++v) {
         if (flood.lowest[v] == no_index || height[v] - flood.level[v] <= noise) continue;
         Index& best = top[flood.lowest[v]];
         if (best == no_index || height[v] > height[best]) best = v;
       }
-      bool raised = false;
+      bool changed = false;
       for (const Index summit : top) {
-        if (summit != no_index) raised = raise_way(flood, height, summit) || raised;
+        if (summit != no_index) changed = join_island(flood, height, summit) || changed;
       }
-      if (!raised) return;
+      if (!changed) return;
     }
   }
 
-  bool raise_way(const Flood& flood, const std::vector<double>& height, Index summit) {
+  /// True where the island is another round's concern: it has become a root, or its way was raised.
+  bool join_island(const Flood& flood, const std::vector<double>& height, Index summit) {
     // only a level in between makes an island; the way lies midway to the next one, so that none runs along it
     const double levels = std::round(height[summit] / spacing_);
     if (flood.level[summit] >= (levels - 0.5) * spacing_) return false;
     const double level = std::min(height[summit], levels * spacing_);
-    bool below = false;  // past the saddle
-    bool raised = false;
+    std::vector<Index> way;  // what lies lower
+    double length = 0;
     for (Index v = summit; v != no_index; v = flood.from[v]) {
       if (height[v] < level) {
-        below = true;
-        raised = raised || axis_[v] < level;
-        axis_[v] = std::max(axis_[v], level);
-        // a way of single vertices zigzags about the axis
-        for_neighbours(mesh_, v, [&](Index to, double) {
-          if (crest_[to] > -infinity) axis_[to] = std::max(axis_[to], level);
-        });
-      } else if (below && v != summit && flood.level[v] >= level) {
+        way.push_back(v);
+        if (flood.from[v] != no_index) length += (mesh_.position(v) - mesh_.position(flood.from[v])).norm();
+      } else if (!way.empty() && flood.level[v] >= level) {
         break;
       }
+    }
+    if (length > longest_way * spacing_) {
+      islands_.push_back(summit);
+      return true;
+    }
+    bool raised = false;
+    for (const Index v : way) {
+      raised = raised || axis_[v] < level;
+      axis_[v] = std::max(axis_[v], level);
+      // a way of single vertices zigzags about the axis
+      for_neighbours(mesh_, v, [&](Index to, double) {
+        if (crest_[to] > -infinity) axis_[to] = std::max(axis_[to], level);
+      });
     }
     return raised;
   }
@@ -358,6 +377,7 @@ class LeastBlend {
   const Progress& progress_;
   std::vector<Spoke> spokes_;
   std::vector<Index> roots_;
+  std::vector<Index> islands_;  // their tops
   Index top_root_ = no_index;
   double height_ = 0;
   int n_levels_ = 0;

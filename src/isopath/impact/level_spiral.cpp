@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
+#include "isopath/contour/blend.h"
 #include "isopath/contour/level_cut.h"
 #include "isopath/contour/turn_angle.h"
 #include "isopath/core/error.h"
@@ -20,7 +23,7 @@ namespace {
 /// so that a curve of many turns is a spiral all round.
 constexpr double window_in_spacings = 3;
 constexpr double window_in_spacings_an_arm = 2;
-constexpr double window_share = 0.02;
+constexpr double window_share = 0.005;
 /// No more than this of a level's length, and of a turn.
 constexpr double widest_window = 0.45;
 constexpr double last_turn = 0.9;
@@ -42,6 +45,9 @@ struct RingFigures {
   std::vector<std::pair<double, double>> arcs;  // turn and length of each chord
   std::vector<double> steepness;                // by how much the function is steeper than 1 there
   std::vector<Vec3> positions;
+  /// Turn and size, in squares of a spacing, of places between this level and the next where levels are not a spacing
+  /// apart, times how much they are off.
+  std::vector<std::pair<double, double>> uneven;
 };
 
 /// The spiral of one component.
@@ -74,6 +80,7 @@ class ComponentSpiral {
     }
     top_ = std::min(static_cast<double>(n_), top - 0.02);
     for (const Contour* ring : rings) rings_.push_back(figures_of(*ring));
+    find_uneven_places();
     window_length_ =
         std::max((window_in_spacings + window_in_spacings_an_arm * arms) * spacing, window_share * area / spacing);
     choose_phase();
@@ -127,6 +134,19 @@ class ComponentSpiral {
     return figures;
   }
 
+  /// Levels are where they are to be, and what lies between them need not be even, as beside the axis, where tips are
+  /// pulled: a curve that rises there would leave gaps.
+  void find_uneven_places() {
+    for (const Index f : faces_) {
+      const SurfacePoint middle{f, Vec3::Constant(1.0 / 3)};
+      const double level = std::floor(function_.value(middle) / spacing_ - 0.5);
+      const double off = std::abs(slope_in(f) - 1);
+      if (!(level >= 0 && level < n_) || off < 0.02) continue;
+      rings_[static_cast<std::size_t>(level)].uneven.emplace_back(
+          turn_at(middle), std::min(off, 1.0) * mesh_.face_area(f) / (spacing_ * spacing_));
+    }
+  }
+
   /// Levels for each spacing across them.
   double slope_in(Index face) const {
     const Triangle& t = mesh_.triangle(face);
@@ -165,6 +185,7 @@ class ComponentSpiral {
       if (k == 0 || rings_[k].length > 3 * window_length_) add_bends(rings_[k], bend);
     }
     for (std::size_t k = 1; k < rings_.size(); ++k) add_dead_ends(rings_[k - 1], rings_[k], bend);
+    for (const RingFigures& ring : rings_) add_lost_ways(ring, spacing_, bend);
     const auto best = std::min_element(bend.begin(), bend.end()) - bend.begin();
     phase_ = static_cast<double>(best) / n_turns;
     for (const Index f : faces_) {
@@ -180,7 +201,11 @@ class ComponentSpiral {
   /// spacing to the next, and how closely levels are squeezed together.
   void add_bends(const RingFigures& ring, std::vector<double>& bend) const {
     const std::vector<double> along = arcs_by_turn(ring, 0);
+    const auto arc_at = [&](double turn) {
+      return along[std::min(static_cast<std::size_t>((turn - std::floor(turn)) * n_turns), n_turns)];
+    };
     std::vector<std::pair<double, double>> corners;  // where along, and change of direction or steepness
+    for (const auto& [turn, weight] : ring.uneven) corners.emplace_back(arc_at(turn), weight);
     const std::size_t n = ring.positions.size();
     Vec3 from = ring.positions.front();
     Vec3 last = Vec3::Zero();
@@ -188,8 +213,7 @@ class ComponentSpiral {
     for (std::size_t k = 0; k < 2 * n && way < ring.length + 3 * spacing_; ++k) {
       const std::size_t i = k % n;
       way += ring.arcs[i].second;
-      const double turn = ring.arcs[i].first - std::floor(ring.arcs[i].first);
-      const double arc = along[std::min(static_cast<std::size_t>(turn * n_turns), n_turns)];
+      const double arc = arc_at(ring.arcs[i].first);
       if (k < n) corners.emplace_back(arc, ring.steepness[i] * ring.arcs[i].second / spacing_);
       if ((ring.positions[i] - from).norm() < spacing_) continue;
       const Vec3 step = (ring.positions[i] - from).normalized();
@@ -217,16 +241,32 @@ class ComponentSpiral {
     const std::vector<double> along = arcs_by_turn(ring, 0);
     const std::vector<double> along_before = arcs_by_turn(before, 0);
     const double window = window_of(ring);
-    const auto at = [](const std::vector<double>& table, std::size_t m) {
-      return table[m % n_turns] + static_cast<double>(m / n_turns) * table[n_turns];
-    };
     std::size_t end = 0;
     for (std::size_t p = 0; p < n_turns; ++p) {
       end = std::max(end, p);
-      while (end < p + n_turns && at(along, end) - at(along, p) < window) ++end;
-      const double excess = at(along_before, end) - at(along_before, p) - window - 8 * spacing_;
-      bend[p] += std::max(0.0, excess) / window_length_;
+      while (end < p + n_turns && arc_in(along, end) - arc_in(along, p) < window) ++end;
+      const double excess = arc_in(along_before, end) - arc_in(along_before, p) - window - 3 * spacing_;
+      bend[p] += std::max(0.0, excess) / spacing_;
     }
+  }
+
+  /// Adds for every phase how long a level runs all but along the line that the surface is cut open by: turns hardly
+  /// change in narrow arms, and a level that goes over the line and back in one falls to pieces.
+  static void add_lost_ways(const RingFigures& ring, double spacing, std::vector<double>& bend) {
+    constexpr std::size_t near_cut = n_turns / 64;
+    constexpr double usual = 3;  // times the mean of all places
+    const std::vector<double> along = arcs_by_turn(ring, 0);
+    const auto cut_before = static_cast<std::size_t>(before_window * n_turns);
+    for (std::size_t p = 0; p < n_turns; ++p) {
+      const std::size_t begin = p + n_turns - cut_before - near_cut;
+      const double length = arc_in(along, begin + 2 * near_cut) - arc_in(along, begin);
+      bend[p] += std::max(0.0, length - usual * ring.length * 2 * near_cut / n_turns) / spacing;
+    }
+  }
+
+  /// An entry of arcs_by_turn, going on after a whole turn.
+  static double arc_in(const std::vector<double>& along, std::size_t m) {
+    return along[m % n_turns] + static_cast<double>(m / n_turns) * along[n_turns];
   }
 
   /// How much of its rise a level has done at each turn: in proportion to the length it has gone, over the window. A
@@ -393,7 +433,7 @@ class ComponentSpiral {
 class LevelSpiral {
  public:
   LevelSpiral(const VertexField& function, const LevelSpiralOptions& options, Progress& progress)
-      : function_(function),
+      : function_(&function),
         mesh_(function.mesh()),
         options_(options),
         progress_(progress),
@@ -425,6 +465,8 @@ class LevelSpiral {
     keep_min_radius(linker_, normals_, plan.curve, radius, progress_);
     finish_curve(linker_, normals_, plan, {.spacing = asked, .radius = radius}, options_.min_radius > 0, progress_);
     plan.contours = std::move(contours_);
+    for (std::vector<Contour>& islands : islands_)
+      std::move(islands.begin(), islands.end(), std::back_inserter(plan.contours));
     return plan;
   }
 
@@ -432,29 +474,23 @@ class LevelSpiral {
   void sort_faces() {
     faces_.resize(mesh_.n_components());
     for (Index f = 0; f < mesh_.n_faces(); ++f) {
-      if (!LevelCut::is_unreached(mesh_, function_, f)) faces_[mesh_.component_of(f)].push_back(f);
+      if (!LevelCut::is_unreached(mesh_, *function_, f)) faces_[mesh_.component_of(f)].push_back(f);
     }
   }
 
   void find_rings() {
     double top = 0;
-    for (const double value : function_.values()) {
+    for (const double value : function_->values()) {
       if (value < infinity) top = std::max(top, value);
     }
     std::vector<double> levels;
     for (int k = 1; (k - 0.5) * options_.spacing < top; ++k) levels.push_back((k - 0.5) * options_.spacing);
-    contours_ = isolines(mesh_, function_, levels, {}, progress_);
-    rings_.resize(mesh_.n_components());
-    for (const Contour& contour : contours_) {
-      std::vector<const Contour*>& rings = rings_[mesh_.component_of(contour.points.front().face)];
-      if (contour.closed && (rings.empty() || rings.back()->level < contour.level)) {
-        rings.push_back(&contour);
-        continue;
-      }
-      throw Error(ErrorCode::no_plan, "the levels are not nested closed curves",
-                  {.element = fmt::format("level {:.6g} mm", contour.level),
-                   .value = contour.closed ? "several curves" : "an open curve",
-                   .advice = "blend the distances (--blend), or take the pattern two-way"});
+    contours_ = isolines(mesh_, *function_, levels, {}, progress_);
+    if (const Contour* extra = sort_rings()) {
+      if (!extra->closed) refuse(*extra);
+      leave_islands_out(levels);
+      extra = sort_rings();
+      if (extra) refuse(*extra);
     }
     if (contours_.empty()) {
       throw Error(ErrorCode::no_plan, "no isoline lies on the surface",
@@ -462,6 +498,48 @@ class LevelSpiral {
                    .value = fmt::format("{} mm", options_.spacing),
                    .advice = "the spacing is too wide for the part: give a smaller one"});
     }
+  }
+
+  /// Fills the rings of the components, level by level. A contour that is not the only one of its level there, or is
+  /// open; null where all are nested.
+  const Contour* sort_rings() {
+    rings_.assign(mesh_.n_components(), {});
+    for (const Contour& contour : contours_) {
+      std::vector<const Contour*>& rings = rings_[mesh_.component_of(contour.points.front().face)];
+      if (!contour.closed || (!rings.empty() && rings.back()->level >= contour.level)) return &contour;
+      rings.push_back(&contour);
+    }
+    return nullptr;
+  }
+
+  [[noreturn]] static void refuse(const Contour& contour) {
+    throw Error(ErrorCode::no_plan, "the levels are not nested closed curves",
+                {.element = fmt::format("level {:.6g} mm", contour.level),
+                 .value = contour.closed ? "several curves" : "an open curve",
+                 .advice = "blend the distances (--blend), or take the pattern two-way"});
+  }
+
+  /// Cuts off all tops but the highest one of every component; what the levels go round there become islands.
+  void leave_islands_out(const std::vector<double>& levels) {
+    std::vector<Index> roots(mesh_.n_components(), no_index);
+    for (Index c = 0; c < mesh_.n_components(); ++c) {
+      for (const Index f : faces_[c]) {
+        for (const Index v : mesh_.triangle(f)) {
+          if (roots[c] == no_index || function_->value_at_vertex(v) > function_->value_at_vertex(roots[c]))
+            roots[c] = v;
+        }
+      }
+    }
+    std::vector<double> values(function_->values().begin(), function_->values().end());
+    leave_one_top(mesh_, roots, values);
+    without_islands_.emplace(mesh_, std::move(values));
+    islands_.resize(mesh_.n_components());
+    for (Contour& contour : contours_) {
+      const bool is_cut_off = without_islands_->value(contour.points.front()) < contour.level - 1e-6 * options_.spacing;
+      if (is_cut_off) islands_[mesh_.component_of(contour.points.front().face)].push_back(std::move(contour));
+    }
+    function_ = &*without_islands_;
+    contours_ = isolines(mesh_, *function_, levels, {}, progress_);
   }
 
   /// Turns are counted around the top, or around the hole of an annulus.
@@ -475,10 +553,11 @@ class LevelSpiral {
       double high_on_boundary = -infinity;
       Index lowest = no_index;
       for (const Index f : faces_[c]) {
-        const double value = function_.value({f, Vec3::Constant(1.0 / 3)});
+        const double value = function_->value({f, Vec3::Constant(1.0 / 3)});
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
           if (mesh_.twin(h) != no_index) continue;
-          const double here = 0.5 * (function_.value_at_vertex(mesh_.from(h)) + function_.value_at_vertex(mesh_.to(h)));
+          const double here =
+              0.5 * (function_->value_at_vertex(mesh_.from(h)) + function_->value_at_vertex(mesh_.to(h)));
           if (here < low_on_boundary) {
             low_on_boundary = here;
             outer[c] = f;
@@ -508,7 +587,7 @@ class LevelSpiral {
       const Triangle& t = mesh_.triangle(f);
       return Vec3((mesh_.position(t[0]) + mesh_.position(t[1]) + mesh_.position(t[2])) / 3);
     };
-    const auto is_top = [&](Index f) { return function_.value({f, Vec3::Constant(1.0 / 3)}) > last; };
+    const auto is_top = [&](Index f) { return function_->value({f, Vec3::Constant(1.0 / 3)}) > last; };
     for (const Index f : faces_[c]) {
       if (!is_top(f)) continue;
       sum += mesh_.face_area(f) * middle(f);
@@ -520,7 +599,7 @@ class LevelSpiral {
       if (area > 0 && !is_top(f)) continue;
       // where the last level encloses no face's middle, the highest face
       const double off =
-          area > 0 ? (middle(f) - sum / area).squaredNorm() : -function_.value({f, Vec3::Constant(1.0 / 3)});
+          area > 0 ? (middle(f) - sum / area).squaredNorm() : -function_->value({f, Vec3::Constant(1.0 / 3)});
       if (off < least) {
         least = off;
         best = f;
@@ -538,13 +617,14 @@ class LevelSpiral {
       for (const Contour* ring : rings) few.push_back(*ring);
       return two_way(linker_, few, options_.spacing, progress_);
     }
-    ComponentSpiral spiral(linker_, function_, angle, faces_[c], rings, options_.spacing, options_.arms, progress_);
+    ComponentSpiral spiral(linker_, *function_, angle, faces_[c], rings, options_.spacing, options_.arms, progress_);
     std::vector<SurfaceCurve> curves;
     curves.push_back(spiral.run());
-    return curves;
+    if (islands_.empty() || islands_[c].empty()) return curves;
+    return joined_to_curve(linker_, curves.front(), islands_[c], options_.spacing, progress_);
   }
 
-  const VertexField& function_;
+  const VertexField* function_;  // without its islands
   const TriangleMesh& mesh_;
   const LevelSpiralOptions& options_;
   Progress& progress_;
@@ -554,6 +634,8 @@ class LevelSpiral {
   std::vector<std::vector<Index>> faces_;  // of every component, those that are reached
   std::vector<Contour> contours_;
   std::vector<std::vector<const Contour*>> rings_;
+  std::optional<VertexField> without_islands_;
+  std::vector<std::vector<Contour>> islands_;  // of every component, the contours around its other tops
 };
 
 }  // namespace

@@ -8,12 +8,13 @@
 
 namespace isopath {
 
-Ring::Ring(const TriangleMesh& mesh, std::vector<SurfacePoint> points) : mesh_(mesh), points_(std::move(points)) {
+Ring::Ring(const TriangleMesh& mesh, std::vector<SurfacePoint> points, bool open)
+    : mesh_(mesh), open_(open), points_(std::move(points)) {
   positions_.reserve(points_.size());
   for (const SurfacePoint& point : points_) positions_.push_back(position_of(mesh, point));
   arc_.push_back(0);
   for (std::size_t i = 0; i < points_.size(); ++i)
-    arc_.push_back(arc_.back() + (positions_[next(i)] - positions_[i]).norm());
+    arc_.push_back(arc_.back() + (open && i + 1 == points_.size() ? 0 : (positions_[next(i)] - positions_[i]).norm()));
 }
 
 double Ring::wrapped(double arc) const {

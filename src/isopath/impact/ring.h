@@ -11,9 +11,11 @@ namespace isopath {
 class Ring {
  public:
   /// `points`, at least two, as of a closed contour: consecutive ones share a face, the last one and the first too, and
-  /// the first is not repeated.
-  Ring(const TriangleMesh& mesh, std::vector<SurfacePoint> points);
+  /// the first is not repeated. An open curve may be given as a ring whose last point is followed by the first one at
+  /// once, without a length between them: consecutive points of it share a face but for these.
+  Ring(const TriangleMesh& mesh, std::vector<SurfacePoint> points, bool open = false);
 
+  bool open() const { return open_; }
   double length() const { return arc_.back(); }
   Index face() const { return points_.front().face; }
   /// The arc brought to [0, length).
@@ -34,6 +36,7 @@ class Ring {
   std::size_t next(std::size_t i) const { return i + 1 < points_.size() ? i + 1 : 0; }
 
   const TriangleMesh& mesh_;
+  bool open_;
   std::vector<SurfacePoint> points_;
   std::vector<Vec3> positions_;
   std::vector<double> arc_;  // of every point, and the length at the end

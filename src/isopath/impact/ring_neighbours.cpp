@@ -27,6 +27,8 @@ RingSamples::RingSamples(const std::vector<Ring>& rings, double spacing, Progres
     const double n = std::max(8.0, std::ceil(4 * length / spacing));
     for (double i = 0; i < n; ++i) {
       const double arc = (i + 0.5) / n * length;
+      // the ends of an open curve are to stay its ends
+      if (rings[k].open() && std::min(arc, length - arc) < 1.5 * spacing) continue;
       samples_.push_back({static_cast<Index>(k), arc, rings[k].position(arc), bend_at(rings[k], arc, spacing)});
     }
   }

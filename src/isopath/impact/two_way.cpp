@@ -1,6 +1,7 @@
 #include "isopath/impact/two_way.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "isopath/impact/boundary_rings.h"
 #include "isopath/impact/ring_joints.h"
@@ -99,6 +100,36 @@ std::vector<SurfaceCurve> two_way(const SurfaceLinker& linker, std::span<const C
   const std::vector<Ring> rings = rings_of(linker.mesh(), contours);
   const std::vector<RingJoint> joints = choose_joints(linker, rings, spacing, progress);
   return JoinedRings(rings, joints).walk_all();
+}
+
+std::vector<SurfaceCurve> joined_to_curve(const SurfaceLinker& linker, const SurfaceCurve& curve,
+                                          std::span<const Contour> contours, double spacing, Progress& progress) {
+  std::vector<Ring> rings;
+  rings.emplace_back(linker.mesh(), curve.points, true);
+  for (Ring& ring : rings_of(linker.mesh(), contours)) rings.push_back(std::move(ring));
+  const std::vector<RingJoint> joints = choose_joints(linker, rings, spacing, progress);
+  std::vector<SurfaceCurve> joined = JoinedRings(rings, joints).walk_all();
+  const bool has_joint = std::any_of(joints.begin(), joints.end(), [](const RingJoint& joint) {
+    return joint.cuts[0].ring == 0 || joint.cuts[1].ring == 0;
+  });
+  // the first one holds the curve, and begins anywhere on it
+  SurfaceCurve& whole = joined.front();
+  if (!has_joint) whole = curve;
+  const auto is_at = [&](std::size_t i, const Vec3& place) { return whole.positions[i] == place; };
+  for (std::size_t i = 0; i + 1 < whole.size(); ++i) {
+    if (!is_at(i, curve.positions.back()) || !is_at(i + 1, curve.positions.front())) continue;
+    SurfaceCurve turned;
+    const auto take = [&](std::size_t from, std::size_t to) {
+      const auto at = [](auto& values, std::size_t k) { return values.begin() + static_cast<std::ptrdiff_t>(k); };
+      turned.points.insert(turned.points.end(), at(whole.points, from), at(whole.points, to));
+      turned.positions.insert(turned.positions.end(), at(whole.positions, from), at(whole.positions, to));
+    };
+    take(i + 1, whole.size() - 1);
+    take(0, i + 1);
+    whole = std::move(turned);
+    break;
+  }
+  return joined;
 }
 
 }  // namespace isopath

@@ -17,4 +17,11 @@ namespace isopath {
 std::vector<SurfaceCurve> two_way(const SurfaceLinker& linker, std::span<const Contour> contours, double spacing,
                                   Progress& progress = Progress::none());
 
+/// The same for a curve from one place to another and closed contours beside it: each of these is inserted into the
+/// curve by a joint, so that it keeps its ends. More than one curve comes back where a contour lies on another
+/// component.
+std::vector<SurfaceCurve> joined_to_curve(const SurfaceLinker& linker, const SurfaceCurve& curve,
+                                          std::span<const Contour> contours, double spacing,
+                                          Progress& progress = Progress::none());
+
 }  // namespace isopath
