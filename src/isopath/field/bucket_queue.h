@@ -20,6 +20,10 @@ class BucketQueue {
     buckets_[(current_ + ahead) % n_buckets].push_back(item);
     ++size_;
   }
+  /// Whether items with these keys, both at least 0, wait in the same bucket.
+  bool same_bucket(float key, float other) const {
+    return static_cast<std::int64_t>(key * per_width_) == static_cast<std::int64_t>(other * per_width_);
+  }
   /// Whether a key lies in the bucket being emptied or before it.
   bool due(float key) const { return key * per_width_ - first_ < 1; }
   bool empty() const { return size_ == 0; }

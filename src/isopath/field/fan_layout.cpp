@@ -45,8 +45,10 @@ class AngleSum {
 }  // namespace
 
 FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(mesh.n_vertices() + 1) {
-  // an open fan has one spoke more than faces
-  spokes_.resize(2 * static_cast<std::size_t>(mesh.n_edges()));
+  // a spoke for each corner, and one more in each fan
+  constexpr std::size_t read_at_once = 4;
+  spokes_.resize(static_cast<std::size_t>(mesh.n_halfedges()) + static_cast<std::size_t>(mesh.n_vertices()) +
+                 read_at_once);
   const double scale = 1 / unit_;
   std::uint32_t n_spokes = 0;
   for (Index v = 0; v < mesh.n_vertices(); ++v) {
@@ -77,11 +79,13 @@ FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(me
       h = mesh.next_outgoing(h);
     } while (h != start && h != no_index);
     head.closed = h == start;
-    if (!head.closed) spokes_[n_spokes++] = {static_cast<std::uint32_t>(end), length, 1, 0};
+    const FanSpoke again = spokes_[head.first];
+    spokes_[n_spokes++] = head.closed ? again : FanSpoke{static_cast<std::uint32_t>(end), length, 1, 0};
     head.bends = total.exceeds(head.closed ? 2 : 1, slight_saddle);
     head.bends_sharply = total.exceeds(head.closed ? 2 : 1, sharp_saddle);
     most_spokes_ = std::max<std::size_t>(most_spokes_, n_spokes - head.first);
   }
+  std::fill(spokes_.begin() + n_spokes, spokes_.end(), FanSpoke{});
   heads_[mesh.n_vertices()] = {n_spokes, false, false, false};
 }
 

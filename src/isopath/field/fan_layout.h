@@ -18,15 +18,16 @@ struct FanSpoke {
 };
 
 /// The faces around every vertex as a fan of spokes, one fan after the other in memory and in single precision: all
-/// that a front needs to step from a vertex on. Lengths are divided by `unit`, a power of two near the mean edge
-/// length, so that single precision serves every scale and scaling by powers of two rounds nothing.
+/// that a front needs to step from a vertex on. Four spokes may be read at a time, past the end of a fan, too. Lengths
+/// are divided by `unit`, a power of two near the mean edge length, so that single precision serves every scale and
+/// scaling by powers of two rounds nothing.
 class FanLayout {
  public:
   explicit FanLayout(const TriangleMesh& mesh);
 
   struct Fan {
-    std::span<const FanSpoke> spokes;  ///< one more than faces where the vertex lies on the boundary
-    bool closed;
+    std::span<const FanSpoke> spokes;  ///< one more than faces: in a closed fan the first comes again at the end
+    bool closed;                       ///< false where the vertex lies on the boundary
     bool bends;  ///< a saddle or a reflex corner of the boundary by more than a little: shortest ways may bend here
     bool bends_sharply;  ///< by so much that a strongly curved front may start here
   };
@@ -46,7 +47,7 @@ class FanLayout {
   void prefetch_head(std::uint32_t vertex) const { __builtin_prefetch(&heads_[vertex]); }
 
   double unit() const { return unit_; }
-  /// Spokes of the largest fan.
+  /// Spokes of the largest fan, with the one that comes again.
   std::size_t most_spokes() const { return most_spokes_; }
 
  private:

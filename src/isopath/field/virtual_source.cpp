@@ -1,14 +1,17 @@
 #include "isopath/field/virtual_source.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/bucket_queue.h"
 #include "isopath/field/edge_front.h"
+#include "isopath/field/four_lanes.h"
 #include "isopath/field/straight_ways.h"
 
 namespace isopath {
@@ -144,13 +147,73 @@ bool fronts_met(const Door& door, float& distance) {
   return true;
 }
 
+/// Which of four faces beside each other may take the front on: `step_through` with all that costs little, of which
+/// most faces bring nothing. The nearer end of two spokes is the one to step through.
+[[gnu::always_inline]] inline std::uint32_t steps_from(const Arrival& here, const FanSpoke* spokes,
+                                                       const Arrival* around) {
+  const FourRecords left = records(around);
+  const FourRecords right = records(around + 1);
+  const FourRecords face = records(spokes);
+  const Floats right_length = records(spokes + 1).second;
+  const Ints to_left = left.first <= right.first;
+  const Floats nearer = to_left ? left.first : right.first;
+  const Floats farther = to_left ? right.first : left.first;
+  const Ints root = Ints(to_left ? left.fourth : right.fourth);
+  const Ints served = (root & Ints{is_settled, is_settled, is_settled, is_settled}) != 0;
+  const Ints worth = served & (farther > min(nearer, all(here.distance)));
+  if (bits(worth) == 0) return 0;
+
+  const Floats length = to_left ? face.second : right_length;
+  const Floats front_length = to_left ? right_length : face.second;
+  const Floats front_x = front_length * face.third;
+  const Floats front_y = front_length * face.fourth;
+  const Floats other_bent = to_left ? left.second : right.second;
+  const Ints source = Ints(to_left ? left.third : right.third);
+  const auto own_source = static_cast<std::int32_t>(here.source);
+  const Floats bent = min(other_bent, all(here.bent));
+  const Ints two_roots = (source != Ints{own_source, own_source, own_source, own_source}) & (bent == 0) &
+                         (max(other_bent, all(here.bent)) == 0) & (nearer > 0) & (all(here.distance) > 0);
+  const Ints straight = (bent == all(no_centre)) | two_roots;
+
+  const Floats to_tail = all(here.distance) - bent;
+  const Floats to_head = nearer - bent;
+  const Floats x = 0.5F * ((to_tail - to_head) * (to_tail + to_head) / length + length);
+  const Floats y = square_root((to_tail - x) * (to_tail + x));  // where there is no circle, nothing compares to it
+  Floats ray_x = front_x - x;
+  Floats ray_y = front_y + y;
+  Floats distance = bent + square_root(ray_x * ray_x + ray_y * ray_y);
+  if (bits(straight) != 0) {
+    const Floats slope = (nearer - all(here.distance)) / length;
+    const Floats rise = square_root(1 - slope * slope);
+    ray_x = straight ? slope : ray_x;
+    ray_y = straight ? rise : ray_y;
+    distance = straight ? all(here.distance) + (slope * front_x + rise * front_y) : distance;
+  }
+  const Floats at = front_x * ray_y - front_y * ray_x;
+  const Floats width = length * ray_y;
+  const Floats slack = grazing * width;
+  return bits(worth & (at >= -slack) & (at <= width + slack) & (distance < farther * all(1 - single_rounding)));
+}
+
+/// Calls `visit` for those of n items that `chosen` names, which looks at four at a time, in order.
+template <typename Chosen, typename Visit>
+[[gnu::always_inline]] inline void for_each_of_four(std::size_t n, const Chosen& chosen, const Visit& visit) {
+  constexpr std::size_t most = 32;
+  for (std::size_t first = 0; first < n; first += most) {
+    std::uint32_t mask = 0;
+    for (std::size_t i = first; i < std::min(n, first + most); i += 4) mask |= chosen(i) << (i - first);
+    if (n - first < most) mask &= (1U << (n - first)) - 1;
+    for (; mask != 0; mask &= mask - 1) visit(first + static_cast<std::size_t>(std::countr_zero(mask)));
+  }
+}
+
 class Propagation {
  public:
   Propagation(const TriangleMesh& mesh, const FanLayout& fans)
       : mesh_(mesh),
         fans_(fans),
         arrivals_(mesh.n_vertices(), Arrival{}),
-        around_(fans.most_spokes()),
+        around_(fans.most_spokes() + 6),
         queue_(bucket_step),
         ways_(mesh) {}
 
@@ -164,7 +227,7 @@ class Propagation {
   void start_from(const SourceSet& sources, std::uint32_t k, std::size_t most_faces);
   bool is_corner(const SourceSet& sources, const SourceElement& point) const;
   void settle(std::uint32_t vertex);
-  void step_through_faces(const Arrival& here, const FanLayout::Fan& fan);
+  void walk_along_edges(const Arrival& here, std::uint32_t vertex, const FanLayout::Fan& fan);
   void step_through_face(const Arrival& here, const FanLayout::Fan& fan, std::size_t i, bool to_left);
   void hand_over(std::uint32_t vertex, const Arrival& arrival);
   void look_ahead() const;
@@ -172,7 +235,7 @@ class Propagation {
   const TriangleMesh& mesh_;
   const FanLayout& fans_;
   LargeVector<Arrival> arrivals_;
-  std::vector<Arrival> around_;  ///< of the fan at hand
+  std::vector<Arrival> around_;  ///< the fan at hand, from the spoke before the first one to the one after the last
   BucketQueue queue_;
   StraightWays ways_;
   std::uint32_t n_chains_ = 0;  ///< of the sources: points, polylines and loops
@@ -183,8 +246,10 @@ class Propagation {
   if (!(arrival.distance < held.distance)) return;  // a vertex may be twice in a fan
   std::uint32_t before = held.root & was_settled;
   if ((held.root & is_settled) != 0) before = was_settled;
+  const bool waits = held.distance < std::numeric_limits<float>::infinity() && (held.root & is_settled) == 0 &&
+                     queue_.same_bucket(arrival.distance, held.distance);
   held = {arrival.distance, arrival.bent, arrival.source, arrival.root | before};
-  queue_.push(arrival.distance, vertex);
+  if (!waits) queue_.push(arrival.distance, vertex);
 }
 
 /// Hands the distance of a vertex on to its neighbours: through every edge from it whose other end is settled as well
@@ -193,65 +258,82 @@ void Propagation::settle(std::uint32_t vertex) {
   Arrival& own = arrivals_[vertex];
   if ((own.root & is_settled) != 0) return;
   own.root |= is_settled;
-  const FanLayout::Fan fan = fans_.fan(vertex);
-  const std::span<const FanSpoke> spokes = fan.spokes;
-  const std::size_t n = spokes.size();
-  for (std::size_t i = 0; i < n; ++i) around_[i] = arrivals_[spokes[i].end];
   const Arrival here = own;
-  step_through_faces(here, fan);
+  const FanLayout::Fan fan = fans_.fan(vertex);
+  const std::size_t n = fan.spokes.size();
+  if (n == 0) return;
+  Arrival* const around = around_.data() + 1;
+  for (std::size_t i = 0; i < n; ++i) around[i] = arrivals_[fan.spokes[i].end];
+  around[-1] = fan.closed ? around[n - 2] : Arrival{};
+  around[n] = fan.closed ? around[1] : Arrival{};
 
+  // After a new distance the nearer end of a spoke may have been served through the old one.
+  if ((here.root & was_settled) != 0) {
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      step_through_face(here, fan, i, true);
+      step_through_face(here, fan, i, false);
+    }
+  } else {
+    for_each_of_four(
+        n - 1, [&](std::size_t i) { return steps_from(here, fan.spokes.data() + i, around + i); },
+        [&](std::size_t i) { step_through_face(here, fan, i, around[i].distance <= around[i + 1].distance); });
+  }
+  walk_along_edges(here, vertex, fan);
+}
+
+void Propagation::walk_along_edges(const Arrival& here, std::uint32_t vertex, const FanLayout::Fan& fan) {
   Arrival along{0, here.bent, here.source, here.root & ~marks};
   if (fan.bends) along = {0, here.distance, vertex, along.root};
   if (fan.bends_sharply) {
     along.root = root_of(n_chains_ + vertex);
     start_ways(ways_.from_vertex(static_cast<Index>(vertex), most_faces_at_bend), here.distance * fans_.unit(), along);
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    along.distance = here.distance + spokes[i].length;
-    if (along.distance < around_[i].distance * (1 - single_rounding)) hand_over(spokes[i].end, along);
-  }
-}
-
-void Propagation::step_through_faces(const Arrival& here, const FanLayout::Fan& fan) {
-  const std::size_t n = fan.spokes.size();
-  const std::size_t n_faces = fan.closed ? n : std::max<std::size_t>(n, 1) - 1;
-  // After a new distance the nearer end of a spoke may have been served through the old one.
-  const bool both_ways = (here.root & was_settled) != 0;
-  for (std::size_t i = 0; i < n_faces; ++i) {
-    const bool to_left = around_[i].distance <= around_[i + 1 == n ? 0 : i + 1].distance;
-    step_through_face(here, fan, i, to_left);
-    if (both_ways) step_through_face(here, fan, i, !to_left);
-  }
+  const Arrival* const around = around_.data() + 1;
+  const FanSpoke* const spokes = fan.spokes.data();
+  for_each_of_four(
+      fan.spokes.size(),
+      [&](std::size_t i) {
+        const Floats distance = all(here.distance) + records(spokes + i).second;
+        return bits(distance < records(around + i).first * all(1 - single_rounding));
+      },
+      [&](std::size_t i) {
+        along.distance = here.distance + spokes[i].length;
+        hand_over(spokes[i].end, along);
+      });
 }
 
 /// In the face between spokes i and i + 1, through one of them to the end of the other.
 [[gnu::always_inline]] inline void Propagation::step_through_face(const Arrival& here, const FanLayout::Fan& fan,
                                                                   std::size_t i, bool to_left) {
-  const std::span<const FanSpoke> spokes = fan.spokes;
-  const std::size_t n = spokes.size();
-  const std::size_t j = i + 1 == n ? 0 : i + 1;
-  const std::size_t side = to_left ? i : j;  // through the spoke to this one
-  const std::size_t ahead = to_left ? j : i;
-  if ((around_[side].root & is_settled) == 0) return;
-  if (!(around_[ahead].distance > std::min(around_[side].distance, here.distance))) return;
+  const FanSpoke* const spokes = fan.spokes.data();
+  Arrival* const around = around_.data() + 1;
+  const std::size_t n_faces = fan.spokes.size() - 1;
+  const std::size_t side = to_left ? i : i + 1;  // through the spoke to this one
+  const std::size_t ahead = to_left ? i + 1 : i;
+  if ((around[side].root & is_settled) == 0) return;
+  if (!(around[ahead].distance > std::min(around[side].distance, here.distance))) return;
   // in sight of the sources, what a front of two of them would bring is less sure than what is there
-  if ((around_[ahead].root & is_seen) != 0 && here.source != around_[side].source) return;
-  if (!fan.closed && side == (to_left ? 0 : n - 1)) return;  // nothing comes through a boundary edge
-  const std::size_t behind = to_left ? (i == 0 ? n : i) - 1 : (j + 1 == n ? 0 : j + 1);
+  if ((around[ahead].root & is_seen) != 0 && here.source != around[side].source) return;
+  if (!fan.closed && side == (to_left ? 0 : n_faces)) return;  // nothing comes through a boundary edge
+  std::size_t behind = to_left ? i - 1 : i + 2;
+  if (to_left && i == 0) behind = n_faces - 1;
+  if (!to_left && i + 1 == n_faces) behind = 1;
   const FanSpoke& face = spokes[i];
-  const FanSpoke& back = spokes[to_left ? behind : j];
+  const FanSpoke& back = spokes[to_left ? behind : i + 1];
   const float front_length = spokes[ahead].length;
   const float back_length = spokes[behind].length;
   const Door door{here,
-                  around_[side],
-                  around_[behind],
+                  around[side],
+                  around[behind],
                   spokes[behind].end,
                   spokes[side].length,
                   {back_length * back.cosine, -back_length * back.sine},
                   {front_length * face.cosine, front_length * face.sine}};
   Arrival arrival;
-  if (!step_through(door, around_[ahead].distance, arrival)) return;
-  around_[ahead] = arrival;
+  if (!step_through(door, around[ahead].distance, arrival)) return;
+  around[ahead] = arrival;
+  if (fan.closed && ahead == 0) around[n_faces] = arrival;
+  if (fan.closed && ahead == n_faces) around[0] = arrival;
   hand_over(spokes[ahead].end, arrival);
 }
 
