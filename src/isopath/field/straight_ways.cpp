@@ -14,13 +14,27 @@ constexpr double grazing = 1e-9;
 
 /// The corner across a half-edge from its face, in the plane of its ends.
 Vec2 unfolded(const TriangleMesh& mesh, Index twin, const Vec2& tail, const Vec2& head) {
-  const double length = mesh.edge_length(mesh.edge_of(twin));
+  const double inverse = 1 / mesh.edge_length(mesh.edge_of(twin));
   const double from_tail = mesh.edge_length(mesh.edge_of(TriangleMesh::next(twin)));
   const double from_head = mesh.edge_length(mesh.edge_of(TriangleMesh::prev(twin)));
-  const double along = 0.5 * ((from_tail - from_head) * (from_tail + from_head) / length + length);
-  const double across = std::sqrt(std::max(0.0, (from_tail - along) * (from_tail + along)));
-  const Vec2 unit = (head - tail) / length;
-  return tail + along * unit + across * Vec2(unit.y(), -unit.x());
+  const Vec2 edge = head - tail;
+  const double along = 0.5 * (inverse * inverse * (from_tail - from_head) * (from_tail + from_head) + 1);
+  const double to_foot = along / inverse;
+  const double across = inverse * std::sqrt(std::max(0.0, (from_tail - to_foot) * (from_tail + to_foot)));
+  return tail + along * edge + across * Vec2(edge.y(), -edge.x());
+}
+
+/// How far the second point lies left of the ray through the first; what is too little to count.
+struct Turn {
+  double by;
+  double slack;
+  bool is_left() const { return by > slack; }
+  bool is_left_or_on() const { return by >= -slack; }
+};
+template <bool parallel>
+Turn turn(const Vec2& right, const Vec2& left) {
+  if (parallel) return {right.x() - left.x(), grazing * (std::abs(right.y()) + std::abs(left.y()))};
+  return {cross(right, left), grazing * std::abs(right.dot(left))};
 }
 
 /// The corners of a face in its plane, with the origin and the direction of the x axis given in space.
@@ -37,37 +51,41 @@ std::array<Vec2, 3> laid_out(const TriangleMesh& mesh, Index face, const Vec3& o
 
 }  // namespace
 
-/// Above zero where the second point lies left of the ray through the first.
-double StraightWays::turn(const Vec2& right, const Vec2& left) const {
-  if (parallel_) return right.x() - left.x() + grazing * (std::abs(right.y()) + std::abs(left.y()));
-  return cross(right, left) + grazing * right.norm() * left.norm();
+/// Lets rays go out through an edge of the face that the start is in, those that reach it.
+void StraightWays::leave(Beam beam) {
+  const auto is_left = [&](const Vec2& right, const Vec2& left) {
+    return parallel_ ? turn<true>(right, left).is_left() : turn<false>(right, left).is_left();
+  };
+  if (!is_left(beam.tail, beam.head)) return;  // seen from the side or from outside
+  if (!is_left(beam.tail, beam.right)) beam.right = beam.tail;
+  if (!is_left(beam.left, beam.head)) beam.left = beam.head;
+  if (is_left(beam.right, beam.left)) beams_.push_back(beam);
 }
 
-/// Lets rays go through a half-edge, those that reach it.
-void StraightWays::leave(const Beam& beam) {
-  Beam out = beam;
-  if (!(turn(beam.head, beam.tail) < 0)) return;  // seen from the side or from outside
-  if (turn(beam.right, beam.tail) > 0) out.right = beam.tail;
-  if (turn(beam.head, beam.left) > 0) out.left = beam.head;
-  if (turn(out.left, out.right) < 0) beams_.push_back(out);
-}
-
+template <bool parallel>
 void StraightWays::enter(const Beam& beam) {
   const Index twin = mesh_.twin(beam.halfedge);
   if (twin == no_index) return;
   const Vec2 apex = unfolded(mesh_, twin, beam.tail, beam.head);
-  if (turn(beam.right, apex) >= 0 && turn(apex, beam.left) >= 0) {
+  const Turn from_right = turn<parallel>(beam.right, apex);
+  const Turn to_left = turn<parallel>(apex, beam.left);
+  if (from_right.is_left_or_on() && to_left.is_left_or_on()) {
     const Index vertex = mesh_.from(TriangleMesh::prev(twin));
-    ways_.push_back({static_cast<std::uint32_t>(vertex), parallel_ ? std::max(0.0, apex.y()) : apex.norm()});
+    ways_.push_back({static_cast<std::uint32_t>(vertex), parallel ? std::max(0.0, apex.y()) : apex.norm()});
   }
-  leave({TriangleMesh::next(twin), beam.tail, apex, beam.right, beam.left});
-  leave({TriangleMesh::prev(twin), apex, beam.head, beam.right, beam.left});
+  if (from_right.is_left()) {
+    beams_.push_back({TriangleMesh::next(twin), beam.tail, apex, beam.right, to_left.is_left() ? apex : beam.left});
+  }
+  if (to_left.is_left()) {
+    beams_.push_back({TriangleMesh::prev(twin), apex, beam.head, from_right.is_left() ? apex : beam.right, beam.left});
+  }
 }
 
+template <bool parallel>
 void StraightWays::follow(std::size_t most_faces) {
   for (std::size_t k = 0; k < std::min(beams_.size(), most_faces); ++k) {
     const Beam beam = beams_[k];
-    enter(beam);
+    enter<parallel>(beam);
   }
   beams_.clear();
 }
@@ -88,7 +106,7 @@ std::span<const StraightWays::Way> StraightWays::from_vertex(Index vertex, std::
     h = mesh_.next_outgoing(h);
     if (h == start) break;
   }
-  follow(most_faces);
+  follow<false>(most_faces);
   return ways_;
 }
 
@@ -135,12 +153,12 @@ std::span<const StraightWays::Way> StraightWays::from_element(const SourceElemen
     if (parallel_) {
       add_segment(element, face, false);
       add_segment(element, face, true);
-      follow(most_faces);
+      follow<true>(most_faces);
     } else {
       add_point(element, face);
     }
   }
-  follow(most_faces);
+  follow<false>(most_faces);
   return ways_;
 }
 

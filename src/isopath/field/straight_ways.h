@@ -34,12 +34,13 @@ class StraightWays {
     Index halfedge;
     Vec2 tail;
     Vec2 head;
-    Vec2 right;  ///< points that the outermost rays pass
+    Vec2 right;  ///< points that the outermost rays pass, both on or between tail and head
     Vec2 left;
   };
-  double turn(const Vec2& right, const Vec2& left) const;
-  void leave(const Beam& beam);
+  void leave(Beam beam);
+  template <bool parallel>
   void enter(const Beam& beam);
+  template <bool parallel>
   void follow(std::size_t most_faces);
   void add_segment(const SourceElement& element, Index face, bool reversed);
   void add_point(const SourceElement& element, Index face);
