@@ -146,15 +146,18 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   const SourceSet& sources = data->sources;
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   options.validate();
-  index_sources(*data);
   MergeLimits limits;
   SourceFronts fronts;
   std::optional<ListPropagation> room;
-  side_by_side([&] { limits = merge_limits(data->mesh, data->geometry, sources, options, progress); },
-               [&] {
-                 fronts = source_fronts(data->mesh, data->geometry, sources, progress);
-                 room.emplace(data->mesh, data->geometry, true);
-               });
+  side_by_side(
+      [&] {
+        index_sources(*data);
+        limits = merge_limits(data->mesh, data->geometry, sources, options, progress);
+      },
+      [&] {
+        fronts = source_fronts(data->mesh, data->geometry, sources, progress);
+        room.emplace(data->mesh, data->geometry, true);
+      });
   ListPropagation& propagation = *room;
   propagation.start(fronts, limits);
   propagation.run(options.stop_distance, progress);

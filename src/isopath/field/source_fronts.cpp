@@ -1,9 +1,13 @@
 #include "isopath/field/source_fronts.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "isopath/field/source_faces.h"
 
@@ -11,7 +15,7 @@ namespace isopath {
 namespace {
 
 constexpr double half_pi = std::numbers::pi / 2;
-/// Between two looks at whether to go on.
+/// So many are started by one thread at a time.
 constexpr Index elements_at_a_time = 1024;
 
 /// Clips [low, high] to where f0 + slope·x >= 0.
@@ -42,38 +46,46 @@ class FrontBuilder {
  public:
   FrontBuilder(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) : mesh_(mesh), geometry_(geometry) {}
 
-  SourceFronts build(const SourceSet& sources, Progress& progress);
+  /// All but points at vertices.
+  void start(std::span<const SourceElement> elements, Index id) {
+    if (elements[id].kind == SourceElement::Kind::segment) {
+      start_segment(elements[id], id);
+    } else {
+      start_point(elements, id);
+    }
+  }
+  std::vector<SourceFronts::Front> take() { return std::move(fronts_); }
 
  private:
   void start_segment(const SourceElement& element, Index id);
   void start_segment_in_face(const SourceElement& element, Index id, Index face);
   void start_point(std::span<const SourceElement> elements, Index id);
   void start_point_in_face(std::span<const SourceElement> elements, Index id, Index face);
-  void start_vertex(std::span<const SourceElement> elements, Index id, Index vertex);
-  std::vector<BlockedArc> served_by_segments(std::span<const SourceElement> elements, Index id, Index vertex) const;
   std::vector<Vec2> segment_directions(std::span<const SourceElement> elements, Index id, Index halfedge) const;
-  void insert_leaving(Index halfedge, const Window& window) { fronts_.fronts.push_back({halfedge, window}); }
+  void insert_leaving(Index halfedge, const Window& window) { fronts_.push_back({halfedge, window}); }
 
   const TriangleMesh& mesh_;
   const IntrinsicGeometry& geometry_;
-  std::vector<Index> source_at_;  ///< per vertex: index into fronts_.vertices, or none
-  SourceFronts fronts_;
+  std::vector<SourceFronts::Front> fronts_;
 };
 
-SourceFronts FrontBuilder::build(const SourceSet& sources, Progress& progress) {
-  source_at_.assign(mesh_.n_vertices(), no_index);
-  const auto elements = sources.elements();
-  // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
-  for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
-    if (id % elements_at_a_time == 0) progress.checkpoint();
-    if (elements[id].kind == SourceElement::Kind::segment) start_segment(elements[id], id);
-  }
-  for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
-    if (id % elements_at_a_time == 0) progress.checkpoint();
-    if (elements[id].kind == SourceElement::Kind::point) start_point(elements, id);
-  }
-  return std::move(fronts_);
-}
+/// Vertices that hold points, one after the other: several points of a path may meet in one.
+class VertexSources {
+ public:
+  VertexSources(const TriangleMesh& mesh, const IntrinsicGeometry& geometry)
+      : mesh_(mesh), geometry_(geometry), source_at_(mesh.n_vertices(), no_index) {}
+
+  void start(std::span<const SourceElement> elements, Index id, Index vertex);
+  std::vector<SourceFronts::Vertex> take() { return std::move(vertices_); }
+
+ private:
+  std::vector<BlockedArc> served_by_segments(std::span<const SourceElement> elements, Index id, Index vertex) const;
+
+  const TriangleMesh& mesh_;
+  const IntrinsicGeometry& geometry_;
+  std::vector<Index> source_at_;  ///< per vertex: index into vertices_, or none
+  std::vector<SourceFronts::Vertex> vertices_;
+};
 
 void FrontBuilder::start_segment(const SourceElement& element, Index id) {
   Index h = no_index;
@@ -164,10 +176,7 @@ std::vector<Vec2> FrontBuilder::segment_directions(std::span<const SourceElement
 
 void FrontBuilder::start_point(std::span<const SourceElement> elements, Index id) {
   const Support support = support_of(mesh_, elements[id].a);
-  if (support.kind == Support::Kind::vertex) {
-    start_vertex(elements, id, support.index);
-    return;
-  }
+  if (support.kind == Support::Kind::vertex) return;
   for (const Index face : faces_of(mesh_, elements[id])) start_point_in_face(elements, id, face);
   if (support.kind == Support::Kind::edge) {
     Window window;
@@ -198,8 +207,8 @@ void FrontBuilder::start_point_in_face(std::span<const SourceElement> elements, 
   }
 }
 
-std::vector<BlockedArc> FrontBuilder::served_by_segments(std::span<const SourceElement> elements, Index id,
-                                                         Index vertex) const {
+std::vector<BlockedArc> VertexSources::served_by_segments(std::span<const SourceElement> elements, Index id,
+                                                          Index vertex) const {
   std::vector<BlockedArc> arcs;
   double start = 0;
   Index h = mesh_.outgoing(vertex);
@@ -227,22 +236,51 @@ std::vector<BlockedArc> FrontBuilder::served_by_segments(std::span<const SourceE
   return arcs;
 }
 
-void FrontBuilder::start_vertex(std::span<const SourceElement> elements, Index id, Index vertex) {
+void VertexSources::start(std::span<const SourceElement> elements, Index id, Index vertex) {
   if (source_at_[vertex] == no_index) {
-    source_at_[vertex] = static_cast<Index>(fronts_.vertices.size());
-    fronts_.vertices.push_back({vertex, id, served_by_segments(elements, id, vertex)});
+    source_at_[vertex] = static_cast<Index>(vertices_.size());
+    vertices_.push_back({vertex, id, served_by_segments(elements, id, vertex)});
     return;
   }
-  SourceFronts::Vertex& shared = fronts_.vertices[source_at_[vertex]];
+  SourceFronts::Vertex& shared = vertices_[source_at_[vertex]];
   shared.root = id;
   shared.blocked.clear();  // several elements meet: let the envelope choose
+}
+
+/// The fronts of all elements of a kind, in their order.
+void add_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, std::span<const SourceElement> elements,
+                SourceElement::Kind kind, std::vector<SourceFronts::Front>& fronts, const Progress& progress) {
+  const auto n = static_cast<Index>(elements.size());
+  std::vector<std::vector<SourceFronts::Front>> parts((n + elements_at_a_time - 1) / elements_at_a_time);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+    progress.checkpoint();
+    FrontBuilder builder(mesh, geometry);
+    const Index first = static_cast<Index>(k) * elements_at_a_time;
+    for (Index id = first; id < std::min(n, first + elements_at_a_time); ++id) {
+      if (elements[id].kind == kind) builder.start(elements, id);
+    }
+    parts[k] = builder.take();
+  });
+  for (const auto& part : parts) fronts.insert(fronts.end(), part.begin(), part.end());
 }
 
 }  // namespace
 
 SourceFronts source_fronts(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
                            Progress& progress) {
-  return FrontBuilder(mesh, geometry).build(sources, progress);
+  const auto elements = sources.elements();
+  SourceFronts fronts;
+  // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
+  for (const SourceElement::Kind kind : {SourceElement::Kind::segment, SourceElement::Kind::point})
+    add_fronts(mesh, geometry, elements, kind, fronts.fronts, progress);
+  VertexSources vertices(mesh, geometry);
+  for (Index id = 0; id < static_cast<Index>(elements.size()); ++id) {
+    if (elements[id].kind != SourceElement::Kind::point) continue;
+    const Support support = support_of(mesh, elements[id].a);
+    if (support.kind == Support::Kind::vertex) vertices.start(elements, id, support.index);
+  }
+  fronts.vertices = vertices.take();
+  return fronts;
 }
 
 }  // namespace isopath

@@ -1,7 +1,12 @@
 #include "isopath/impact/spiral.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "isopath/core/quiet_progress.h"
 #include "isopath/impact/moved_levels.h"
@@ -118,13 +123,22 @@ class SpiralBuilder {
     const Loop q = make_ring(linker_.mesh(), to, end(), shortest, longest);
     const Strip strip = least_strip(p.curve.positions, q.curve.positions, gap, 6 * gap, progress_);
     if (strip.empty()) return splits > 0 && turn_in_two(from, to, splits - 1);
-    for (const auto& [i, j] : strip) {
+    std::vector<std::optional<SurfacePoint>> at(strip.size());
+    const auto find = [&](std::size_t k, bool plain) {
+      const auto& [i, j] = strip[k];
       const double share = 0.5 * (p.arc[i] + q.arc[j]);
-      if (share <= 0) continue;
-      if (share >= 1) break;
+      if (at[k] || share <= 0 || share >= 1) return;
+      const SurfacePoint& from_p = p.curve.points[i];
+      const SurfacePoint& to_q = q.curve.points[j];
+      const auto rung = plain ? linker_.plain_link(from_p, to_q, 8 * gap) : linker_.link(from_p, to_q, 8 * gap);
+      if (!rung) return;
       const double level = (1 - share) * p.level + share * q.level;
-      const auto rung = linker_.link(p.curve.points[i], q.curve.points[j], 8 * gap);
-      if (rung) extend(point_at_level(linker_.mesh(), function_, rung->points, level, 1e-4 * gap));
+      at[k] = point_at_level(linker_.mesh(), function_, rung->points, level, 1e-4 * gap);
+    };
+    tbb::parallel_for(std::size_t{0}, strip.size(), [&](std::size_t k) { find(k, true); });
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+      find(k, false);  // what takes a field of its own
+      if (at[k]) extend(*at[k]);
     }
     extend(q.curve.points.front());
     return true;

@@ -60,16 +60,23 @@ SurfaceCurve closed_from(const TriangleMesh& mesh, const Contour& contour, const
   return curve;
 }
 
-std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const SurfacePoint& to,
-                                                double longest) const {
+std::optional<SurfaceCurve> SurfaceLinker::plain_link(const SurfacePoint& from, const SurfacePoint& to,
+                                                      double longest) const {
   if ((position_of(mesh_, to) - position_of(mesh_, from)).norm() > longest) return std::nullopt;
   if (mesh_.component_of(from.face) != mesh_.component_of(to.face)) return std::nullopt;
   if (common_face(mesh_, from, to) != no_index) return make_curve(mesh_, {from, to});
   auto walk = surface_walk(mesh_, from, to);
-  if (!walk.empty()) {
-    SurfaceCurve curve = make_curve(mesh_, std::move(walk));
-    if (length_of(curve) <= longest) return curve;
-  }
+  if (walk.empty()) return std::nullopt;
+  SurfaceCurve curve = make_curve(mesh_, std::move(walk));
+  if (length_of(curve) > longest) return std::nullopt;
+  return curve;
+}
+
+std::optional<SurfaceCurve> SurfaceLinker::link(const SurfacePoint& from, const SurfacePoint& to,
+                                                double longest) const {
+  if (auto curve = plain_link(from, to, longest)) return curve;
+  if ((position_of(mesh_, to) - position_of(mesh_, from)).norm() > longest) return std::nullopt;
+  if (mesh_.component_of(from.face) != mesh_.component_of(to.face)) return std::nullopt;
   SourceSet source;
   source.add_point(from);
   QuietProgress quiet(progress_);

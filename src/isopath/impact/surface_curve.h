@@ -40,6 +40,8 @@ class SurfaceLinker {
   /// A curve on the surface from `from` to `to`, both included: along the plane section where that leads there, else
   /// the geodesic. None when every way is longer than `longest`.
   std::optional<SurfaceCurve> link(const SurfacePoint& from, const SurfacePoint& to, double longest) const;
+  /// The same by the plane section alone: none where that does not lead there, though another way may.
+  std::optional<SurfaceCurve> plain_link(const SurfacePoint& from, const SurfacePoint& to, double longest) const;
 
   /// Appends a point to a curve, by way of the surface. Only where the surface offers no way, as between two
   /// components, the point is appended as it is.
