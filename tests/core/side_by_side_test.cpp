@@ -6,7 +6,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace isopath {
@@ -46,6 +48,33 @@ TEST(SideBySide, ThrowsWhatTheFirstThrew) {
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "first");
   }
+}
+
+TEST(SideBySide, EndsAllCallsWholeAndThrowsWhatTheFirstThrew) {
+  constexpr std::size_t n = 40;
+  std::atomic<int> done = 0;
+  std::atomic<int> inside = 0;
+  thread_local bool busy = false;
+  const auto call = [&](std::size_t k) {
+    EXPECT_FALSE(busy) << "a call began inside another one";
+    busy = true;
+    tbb::parallel_for(0, 100, [&](int) {
+      std::this_thread::yield();
+      ++inside;
+    });
+    busy = false;
+    ++done;
+    if (k % 10 == 7) throw std::runtime_error(std::to_string(k));
+  };
+  try {
+    all_side_by_side(n, call);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "7");
+  }
+  EXPECT_EQ(done, n);
+  EXPECT_EQ(inside, 100 * n);
+  all_side_by_side(0, call);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "isopath/contour/contour_graph.h"
 #include "isopath/core/quiet_progress.h"
+#include "isopath/core/side_by_side.h"
 #include "isopath/impact/bump.h"
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/near_places.h"
@@ -189,9 +190,14 @@ class GapCloser {
     std::vector<Replacement> replacements;
     std::vector<char> wide(mesh_.n_faces(), 0);
     double farthest = 0;
-    for (const OpenSpot& spot : view.spots) {
+    std::vector<std::optional<Replacement>> bumps(view.spots.size());
+    all_side_by_side(bumps.size(), [&](std::size_t k) {
       progress_.checkpoint();
-      auto bump = bump_to(spot, cover, round);
+      bumps[k] = bump_to(view.spots[k], cover, round);
+    });
+    for (std::size_t k = 0; k < bumps.size(); ++k) {
+      const OpenSpot& spot = view.spots[k];
+      auto& bump = bumps[k];
       if (bump) replacements.push_back(*std::move(bump));
       if (bump || limits_.round) continue;
       farthest = std::max(farthest, spot.cells.front().distance);
