@@ -71,7 +71,7 @@ blended() { # RUN PART arguments...
   shift 2
   plan "$run" "$out/plates/$part.off" --source boundary --no-report "$@"
 }
-blended l_distance l --spacing 5 --pattern spiral
+blended l_distance l --spacing 5 --pattern spiral --blend-form none
 blended l_paper l --spacing 5 --pattern spiral --blend-form paper
 blended l_least l --spacing 5 --pattern spiral --blend
 blended star star --spacing 3 --pattern spiral --blend

@@ -57,6 +57,19 @@ TEST(PathFigures, CountsTurnsOverFortyFiveDegrees) {
   }
 }
 
+TEST(PathFigures, AStraightWayOverASharpEdgeIsNoCorner) {
+  // over the edge between the plane z = 0 and the wall x = 0 below it, at an angle to the edge
+  for (const double along : {0.0, 0.5, 2.0}) {
+    ImpactCurve curve;
+    curve.points = {at(Vec3(-10, -10 * along, 0)), at(Vec3::Zero()), at(Vec3(0, 10 * along, -10))};
+    curve.points[2].normal = Vec3::UnitX();
+    EXPECT_EQ(path_figures(curve, 1).sharp_corners, 0) << along;
+    // back along the edge instead
+    curve.points[2].position = Vec3(0, -10, -1);
+    EXPECT_EQ(path_figures(curve, 1).sharp_corners, 1) << along;
+  }
+}
+
 TEST(PathFigures, ACornerCutIntoTinyChordsIsOneCorner) {
   ImpactCurve curve;
   curve.points.push_back(at(Vec3(-10, 0, 0)));

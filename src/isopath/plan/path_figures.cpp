@@ -13,28 +13,39 @@
 namespace isopath {
 namespace {
 
-/// A polyline in space with the arc length at each of its points, which are all distinct.
+/// A polyline in space with the arc length and the surface's normal at each of its points, which are all distinct.
 class Polyline {
  public:
-  void append(const Vec3& point) {
+  void append(const ImpactPoint& place) {
+    const Vec3& point = place.position;
     if (!points_.empty() && points_.back() == point) return;
     arc_.push_back(points_.empty() ? 0 : arc_.back() + (point - points_.back()).norm());
     points_.push_back(point);
+    normals_.push_back(place.normal);
   }
   std::size_t size() const { return points_.size(); }
   double length() const { return arc_.empty() ? 0 : arc_.back(); }
   double arc(std::size_t i) const { return arc_[i]; }
   const Vec3& point(std::size_t i) const { return points_[i]; }
+  /// The normal at the last point before an arc, and at the first one after it.
+  const Vec3& normal_before(double arc) const { return normals_[segment_at(arc)]; }
+  const Vec3& normal_after(double arc) const { return normals_[segment_at(arc) + 1]; }
 
   Vec3 at(double arc) const {
-    const auto above = std::upper_bound(arc_.begin(), arc_.end(), arc);
-    const std::size_t j = std::clamp<std::size_t>(static_cast<std::size_t>(above - arc_.begin()), 1, size() - 1);
+    const std::size_t j = segment_at(arc) + 1;
     const double fraction = (arc - arc_[j - 1]) / (arc_[j] - arc_[j - 1]);
     return points_[j - 1] + fraction * (points_[j] - points_[j - 1]);
   }
 
  private:
+  /// The segment that holds an arc, by its first point.
+  std::size_t segment_at(double arc) const {
+    const auto above = std::upper_bound(arc_.begin(), arc_.end(), arc);
+    return std::clamp<std::size_t>(static_cast<std::size_t>(above - arc_.begin()), 1, size() - 1) - 1;
+  }
+
   std::vector<Vec3> points_;
+  std::vector<Vec3> normals_;
   std::vector<double> arc_;
 };
 
@@ -50,8 +61,8 @@ std::vector<Polyline> stretches(const ImpactCurve& curve, Take take) {
       inside = false;
       continue;
     }
-    if (!inside) found.emplace_back().append(curve.points[i - 1].position);
-    found.back().append(point.position);
+    if (!inside) found.emplace_back().append(curve.points[i - 1]);
+    found.back().append(point);
     inside = true;
   }
   return found;
@@ -76,8 +87,20 @@ double smallest_radius(const Polyline& line, double reach) {
   return least;
 }
 
+/// A step as it would be if the surface were unfolded, so that one normal became the other.
+Vec3 unfolded(const Vec3& step, const Vec3& normal, const Vec3& onto) {
+  const Vec3 axis = normal.cross(onto);
+  const double cosine = normal.dot(onto);
+  if (cosine < -0.9) return step;  // folded back: there is no telling how
+  return cosine * step + axis.cross(step) + axis.dot(step) / (1 + cosine) * axis;
+}
+
+/// More than 45 degrees between two steps.
+bool turns_sharply(const Vec3& arriving, const Vec3& leaving) {
+  return arriving.dot(leaving) < std::cos(std::numbers::pi / 4) * arriving.norm() * leaving.norm();
+}
+
 Index count_corners(const Polyline& line, double reach) {
-  const double cos_limit = std::cos(std::numbers::pi / 4);
   Index count = 0;
   double last = -infinity;
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
@@ -85,7 +108,10 @@ Index count_corners(const Polyline& line, double reach) {
     if (s < reach || s + reach > line.length()) continue;
     const Vec3 arriving = line.point(i) - line.at(s - reach);
     const Vec3 leaving = line.at(s + reach) - line.point(i);
-    if (arriving.dot(leaving) >= cos_limit * arriving.norm() * leaving.norm()) continue;
+    if (!turns_sharply(arriving, leaving)) continue;
+    // a straight way over a sharp edge of the part turns in space alone
+    if (!turns_sharply(arriving, unfolded(leaving, line.normal_after(s + reach), line.normal_before(s - reach))))
+      continue;
     if (s - last > 2 * reach) ++count;
     last = s;
   }
