@@ -444,14 +444,17 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   }
   clock.ends("field");
 
+  double too_fine = 0;
   if (may_blend_spiral(result.job, mesh, field.at_vertices)) {
     const double triangles = triangles_for_blend(mesh, result.spacing);
-    const bool is_spiral = result.job.pattern ||
-                           pattern_by_isolines(mesh, *field.function, field.at_vertices, progress) == Pattern::spiral;
-    if (is_spiral) result.spiral.emplace();
-    if (is_spiral && triangles > most_triangles_unasked) result.spiral->too_fine = triangles;
+    if (triangles > most_triangles_unasked) {
+      too_fine = triangles;
+    } else if (result.job.pattern ||
+               pattern_by_isolines(mesh, *field.function, field.at_vertices, progress) == Pattern::spiral) {
+      result.spiral.emplace();
+      choose_spiral(result, field, progress);
+    }
   }
-  if (result.spiral && result.spiral->too_fine == 0) choose_spiral(result, field, progress);
   const bool is_planned = !result.impact.curve.points.empty();
 
   // a curve is made of one thing after the other: a second processor gets the picture ready meanwhile
@@ -462,6 +465,7 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
       [&] {
         if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
       });
+  if (too_fine > 0 && result.pattern == Pattern::spiral) result.spiral.emplace().too_fine = too_fine;
   result.distances = std::move(field.at_vertices);
   if (result.job.report) {
     DisplaySurface& display = result.display;
