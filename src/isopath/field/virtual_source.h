@@ -15,7 +15,7 @@ class VirtualSourceSolver {
  public:
   explicit VirtualSourceSolver(const TriangleMesh& mesh) : mesh_(mesh), fans_(mesh) {}
 
-  /// As `virtual_source_distances`; takes about two thirds of its time.
+  /// As `virtual_source_distances`; takes three fifths to three quarters of its time.
   std::vector<double> distances(const SourceSet& sources, Progress& progress = Progress::none()) const;
 
  private:
@@ -31,8 +31,9 @@ class VirtualSourceSolver {
 ///
 /// Never longer than the way along edges, up to rounding. Almost always exact up to rounding from a point on a convex
 /// flat part, or one that unfolds into it, as long as fronts do not meet. Elsewhere distances err to either side, and
-/// there is no bound: the mean relative error is 0.002 % to 0.25 %, the largest a few percent, where fronts meet, in
-/// the shadow of reflex corners and beside a ragged source: see docs/distance-fields.md. `checked_distances` asks for a
+/// there is no bound: the mean relative error is 0.002 % to 0.2 % on scans and smooth sheets, the largest a few
+/// percent, where fronts meet and in the shadow of reflex corners; more on parts of few long triangles: see
+/// docs/distance-fields.md. `checked_distances` asks for a
 /// bound.
 ///
 /// Works in single precision on lengths relative to the mean edge: expect relative rounding errors of 1e-6, on meshes
