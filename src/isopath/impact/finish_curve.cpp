@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isopath/impact/min_radius.h"
+#include "isopath/impact/taut_curve.h"
 
 namespace isopath {
 namespace {
@@ -14,6 +15,9 @@ namespace {
 constexpr double swell_radius_over_default = 0.85;
 /// Rounding changes bumps: before it, it is enough that they are there.
 constexpr int rounds_before_rounding = 2;
+
+/// What drawing tight leaves covered, in spacings: less than what counts as wide, as it looks at samples only.
+constexpr double taut_gap = 1.02;
 
 bool before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
@@ -40,7 +44,7 @@ std::vector<TightPlace> round_corners(const SurfaceLinker& linker, const SmoothN
 }  // namespace
 
 void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
-                  bool radius_first, Progress& progress) {
+                  const FinishOptions& options, Progress& progress) {
   if (limits.radius > 0) limits.most_rounds = rounds_before_rounding;
   progress.stage("wide gaps");
   ClosedGaps closed = close_gaps_everywhere(linker, normals, plan.curve, limits, progress);
@@ -49,13 +53,20 @@ void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, Imp
   plan.tight = round_corners(linker, normals, plan.curve, limits.radius, closed.unsettled, progress);
   limits.round = true;
   limits.most_rounds = GapLimits{}.most_rounds;
-  if (!radius_first) limits.radius *= swell_radius_over_default;
+  if (!options.radius_first) limits.radius *= swell_radius_over_default;
   closed = close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress);
   int changes = closed.count;
-  if (radius_first) {
+  if (options.radius_first) {
     // what was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
     if (changes > 0) plan.tight = keep_min_radius(linker, normals, plan.curve, limits.radius, progress);
     return;
+  }
+  if (options.taut) {
+    const std::vector<Vec3> moved = draw_taut(
+        linker, normals, plan.curve, {.spacing = limits.spacing, .widest = taut_gap, .radius = plan.radius}, progress);
+    closed.unsettled.insert(closed.unsettled.end(), moved.begin(), moved.end());
+    closed = close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress);
+    changes += closed.count + static_cast<int>(moved.size());
   }
   // where only a corner or a loop reaches, the gap matters more
   limits.round = false;

@@ -12,10 +12,15 @@ namespace isopath {
 /// spacings.
 inline constexpr double default_radius_in_spacings = 0.08;
 
+struct FinishOptions {
+  bool radius_first = false;  ///< the radius was asked for: it comes before the last gaps
+  bool taut = false;          ///< draw the curve tight in the end (taut_curve.h), unless the radius comes first
+};
+
 /// Closes a plan's gaps and rounds its corners with `limits.radius`: bumps first, which may have corners, and what
-/// rounding opens by swells and full turns; unless a radius was asked for (`radius_first`), what these do not reach by
+/// rounding opens by swells and full turns; unless the radius comes first, what these do not reach by
 /// bumps and loops again. Corners stay where the radius is 0. Sets the plan's radius and its tight places.
 void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
-                  bool radius_first, Progress& progress = Progress::none());
+                  const FinishOptions& options, Progress& progress = Progress::none());
 
 }  // namespace isopath

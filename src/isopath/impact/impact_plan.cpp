@@ -65,7 +65,9 @@ void finish(const SurfaceLinker& linker, const SmoothNormals& normals, const Imp
                    .radius = options.min_radius};
   if (limits.radius == 0 && options.pattern == Pattern::two_way)
     limits.radius = default_radius_in_spacings * options.spacing;
-  finish_curve(linker, normals, plan, limits, options.min_radius > 0, progress);
+  const bool two_way = options.pattern == Pattern::two_way;
+  finish_curve(linker, normals, plan, limits,
+               {.radius_first = options.min_radius > 0, .taut = two_way && !options.metric}, progress);
 }
 
 class Planner {

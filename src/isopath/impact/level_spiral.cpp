@@ -463,7 +463,8 @@ class LevelSpiral {
     // levels reach out for what rounding takes off them; rounded last, they would have bumps for nothing
     progress_.stage("corners");
     keep_min_radius(linker_, normals_, plan.curve, radius, progress_);
-    finish_curve(linker_, normals_, plan, {.spacing = asked, .radius = radius}, options_.min_radius > 0, progress_);
+    finish_curve(linker_, normals_, plan, {.spacing = asked, .radius = radius},
+                 {.radius_first = options_.min_radius > 0}, progress_);
     plan.contours = std::move(contours_);
     for (std::vector<Contour>& islands : islands_)
       std::move(islands.begin(), islands.end(), std::back_inserter(plan.contours));
