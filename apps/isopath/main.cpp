@@ -1,4 +1,7 @@
 #include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -19,6 +22,15 @@ std::string failure_message(const CLI::App* app, const CLI::Error& error) {
   return fmt::format("isopath: error: {}\n  '{} --help' tells what is allowed\n", error.what(), command);
 }
 
+/// Every stage of a plan takes arrays of some megabytes and gives them back: to have the system clear the same pages
+/// anew each time costs a twentieth of the whole. They stay with the process instead.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,6 +49,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(failure_message);
 
+  keep_freed_memory();
   listen_for_interrupts();
   CommonFlags flags;
   Action action;
