@@ -21,6 +21,13 @@ nlohmann::ordered_json tight_json(const PlanResult& result) {
   return places;
 }
 
+nlohmann::ordered_json gouge_json(const GougeReport& gouge) {
+  const Vec3& p = gouge.place;
+  nlohmann::ordered_json json = {{"deepest", gouge.deepest}, {"share", gouge.share}};
+  if (gouge.deepest > 0) json["at"] = {p.x(), p.y(), p.z()};
+  return json;
+}
+
 nlohmann::ordered_json scallop_json(const PlanResult& result) {
   const ScallopReport& measured = result.scallop->measured;
   return {{"wanted", result.job.scallop},
@@ -115,6 +122,7 @@ std::string summary_json(const PlanResult& result) {
                   {"time_s", std::move(times)},
                   {"peak_memory_mb", result.peak_memory_mb},
                   {"warnings", result.warnings}};
+  if (result.gouge) summary["gouge"] = gouge_json(*result.gouge);
   if (result.job.min_radius > 0) summary["tight_places"] = tight_json(result);
   if (!result.patches.empty()) summary["patches"] = patches_json(result);
   if (result.scallop) summary["scallop"] = scallop_json(result);

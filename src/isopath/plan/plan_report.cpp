@@ -34,6 +34,16 @@ ReportTable figures_table(const PlanResult& result) {
             "Length over feed; accelerations are left out."}}};
 }
 
+/// For a ball only.
+ReportTable gouge_table(const PlanResult& result) {
+  const GougeReport& gouge = *result.gouge;
+  const Vec3& p = gouge.place;
+  return {"Gouges",
+          {{"deepest cut into the part", text(gouge.deepest), "mm",
+            gouge.deepest > 0 ? fmt::format("At ({}, {}, {}).", text(p.x()), text(p.y()), text(p.z())) : ""},
+           {"way that cuts too deep", text(100 * gouge.share), "%", "Of covering moves and links."}}};
+}
+
 ReportTable coverage_table(const PlanResult& result) {
   const GapReport& gap = result.gap;
   const double w = result.spacing;
@@ -161,6 +171,7 @@ std::string plan_report(const PlanResult& result) {
   data.impact = &result.impact.curve;
   data.tool = &result.tool;
   data.tables = {figures_table(result), coverage_table(result)};
+  if (result.gouge) data.tables.push_back(gouge_table(result));
   if (result.scallop) data.tables.push_back(scallop_table(result));
   if (!result.patches.empty()) data.tables.push_back(patches_table(result));
   if (result.spiral) data.tables.push_back(spiral_table(result));

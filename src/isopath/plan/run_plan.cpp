@@ -42,6 +42,8 @@ constexpr double most_passes = 20000;
 /// The tool's path may leave out no more than this of the spacing, whatever tolerance the job allows: on a part of a
 /// millimetre a hundredth of one is half the way to the next pass.
 constexpr double most_chord_over_spacing = 0.02;
+/// A ball that goes deeper into the part than this share of its radius is told of: facets of a mesh let it go a little.
+constexpr double gouge_over_radius = 0.02;
 /// Lifts higher than so many sizes of the part leave no digits for the part itself.
 constexpr double most_clearance_over_size = 1000;
 
@@ -407,6 +409,23 @@ void find_tight_places(PlanResult& result, const Progress& progress) {
       wanted, result.tight.size(), worst->radius, worst->position.x(), worst->position.y(), worst->position.z()));
 }
 
+std::optional<GougeReport> gouges_of(const PlanResult& result, const ToolOptions& tool, const Progress& progress) {
+  if (tool.process == Process::spray) return std::nullopt;
+  const double radius = 0.5 * tool.ball_diameter;
+  const double tolerance = std::max(2 * tool.chord_tolerance, gouge_over_radius * radius);
+  return measure_gouges(result.part.mesh, result.tool, radius, tolerance, progress);
+}
+
+void warn_of_gouges(PlanResult& result) {
+  if (!result.gouge || result.gouge->deepest == 0) return;
+  const Vec3& p = result.gouge->place;
+  result.warnings.push_back(fmt::format(
+      "the ball cuts into the part along {:.2g} % of its way, by {:.3g} mm at ({:.4g}, {:.4g}, {:.4g}): inner edges "
+      "and "
+      "hollows there are narrower than its radius of {:.4g} mm; take a smaller ball, or leave these places out",
+      100 * result.gouge->share, result.gouge->deepest, p.x(), p.y(), p.z(), 0.5 * result.job.tool.ball_diameter));
+}
+
 /// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
 std::optional<IntrinsicGeometry> warp_for_scallop(const Job& job, PlanResult& result, Progress& progress) {
   if (!(job.scallop > 0)) return std::nullopt;
@@ -537,10 +556,12 @@ PlanResult run_plan(const Job& job, Progress& progress) {
                [&] {
                  result.figures = path_figures(result.impact.curve, result.spacing, result.impact.radius);
                  result.tool = make_tool_path(result.impact.curve, tool, quiet);
+                 result.gouge = gouges_of(result, tool, quiet);
                });
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
 
+  warn_of_gouges(result);
   find_tight_places(result, progress);
 
   if (result.scallop) {

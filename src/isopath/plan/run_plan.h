@@ -15,6 +15,7 @@
 #include "isopath/plan/patch_plans.h"
 #include "isopath/plan/path_figures.h"
 #include "isopath/plan/spiral_choice.h"
+#include "isopath/tool/gouge.h"
 #include "isopath/tool/scallop.h"
 #include "isopath/tool/tool_path.h"
 
@@ -30,7 +31,7 @@ struct StageTime {
 struct ScallopFigures {
   ScallopReport measured;
   double clamped_fraction = 0;  ///< see ScallopMetric
-  double gouged_fraction = 0;
+  double gouged_fraction = 0;   ///< by curvature alone; see PlanResult::gouge
 };
 
 /// What smoothing did to the path, and what its gaps cost.
@@ -62,6 +63,7 @@ struct PlanResult {
   std::vector<TightPlace> tight;              ///< where the job asks for a smallest radius that could not be kept
   PathFigures figures;
   ToolPath tool;
+  std::optional<GougeReport> gouge;  ///< where the tool is a ball
   std::vector<OutputFile> programs;  ///< of `make_programs`
   std::vector<StageTime> times;
   double peak_memory_mb = 0;          ///< of the process so far
