@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -162,6 +163,22 @@ TEST(ExactFieldProperties, ManyQuestionsGetTheSameAnswers) {
     }
   });
   EXPECT_GT(divided, 60U);
+}
+
+TEST(ExactFieldProperties, SourcesThatLieOnEachOtherAreSortedInNoTime) {
+  const TriangleMesh mesh = planar_grid(1, 1, 10, 10);
+  // walked to and fro 40 times: no part of the face that this line crosses has few sources, however small it is
+  const auto at = [](double x, double y) { return SurfacePoint{0, Vec3(1 - 0.1 * x, 0.1 * (x - y), 0.1 * y)}; };
+  std::vector<SurfacePoint> walk;
+  for (int k = 0; k <= 40; ++k) walk.push_back(k % 2 == 0 ? at(3, 0.5) : at(9, 2.5));
+  SourceSet sources;
+  sources.add_polyline(mesh, walk, false);
+  const ExactField field = ExactField::compute(mesh, sources, {.many_questions = true});
+  for (double x = 3; x < 8.95; x += 0.1) {
+    const double along = 0.5 + (x - 3) / 3;
+    EXPECT_NEAR(field.value(at(x, along)), 0, 1e-12);
+    EXPECT_NEAR(field.value(at(x, along + 0.01)), 0.01 * 3 / std::sqrt(10), 1e-12);
+  }
 }
 
 TEST(ExactFieldProperties, NoDistanceInAPartOfAFaceExceedsItsBound) {

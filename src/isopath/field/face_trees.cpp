@@ -1,10 +1,9 @@
 #include "isopath/field/face_trees.h"
 
+#include <utility>
+
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "isopath/field/face_part.h"
 #include "isopath/field/way_back.h"
@@ -18,6 +17,10 @@ constexpr std::size_t many = 48;
 constexpr std::size_t few = 32;
 /// Nor those that are as small as their distance from the source: halves would keep most of what the whole has.
 constexpr int most_halvings = 40;
+/// A part that keeps so much of what is above it wins nothing by being a half; after so many of them in a row it is not
+/// divided either: candidates that lie on each other stay together for ever, all along the line that they share.
+constexpr double all_but_all = 0.9;
+constexpr int most_in_vain = 12;
 /// Halves of the first parts are divided at the same time.
 constexpr int halvings_in_parallel = 5;
 /// Distances are not known better than to this part of the model's size.
@@ -54,13 +57,14 @@ class TreeBuilder {
       }
     }
     Tree tree;
-    divide(FacePart::whole(face_), all, infinity, tree);
+    divide(FacePart::whole(face_), all, infinity, 0, tree);
     return tree;
   }
 
  private:
   /// Adds a part and what it is divided into; `above` may hold what is nearest in it, and all of that up to `bound`.
-  void divide(const FacePart& part, std::span<const NearCandidate> above, double bound, Tree& tree) const {
+  /// The halvings just before were `in_vain`.
+  void divide(const FacePart& part, std::span<const NearCandidate> above, double bound, int in_vain, Tree& tree) const {
     progress_.checkpoint();
     const Vec3 centre = part.centre();
     const Ways ways = ways_from(centre, above);
@@ -72,7 +76,9 @@ class TreeBuilder {
     const std::size_t node = tree.nodes.size();
     tree.nodes.emplace_back();
     const bool small = radius <= nearest;
-    if (kept.size() <= few || small || part.depth >= most_halvings) {
+    const auto n = static_cast<double>(above.size());
+    in_vain = static_cast<double>(kept.size()) > all_but_all * n ? in_vain + 1 : 0;
+    if (kept.size() <= few || small || part.depth >= most_halvings || in_vain > most_in_vain) {
       tree.nodes[node] = {Vec2::Zero(), here, static_cast<std::uint32_t>(tree.candidates.size()),
                           static_cast<std::uint32_t>(tree.candidates.size() + kept.size())};
       tree.candidates.insert(tree.candidates.end(), kept.begin(), kept.end());
@@ -83,15 +89,15 @@ class TreeBuilder {
     tree.nodes[node] = cut_between(halves[0]);
     if (part.depth < halvings_in_parallel) {
       Tree trees[2];
-      tbb::parallel_invoke([&] { divide(halves[0], kept, here, trees[0]); },
-                           [&] { divide(halves[1], kept, here, trees[1]); });
+      tbb::parallel_invoke([&] { divide(halves[0], kept, here, in_vain, trees[0]); },
+                           [&] { divide(halves[1], kept, here, in_vain, trees[1]); });
       tree.nodes[node].first = append(tree, trees[0]);
       tree.nodes[node].second = append(tree, trees[1]);
     } else {
       tree.nodes[node].first = static_cast<std::uint32_t>(tree.nodes.size());
-      divide(halves[0], kept, here, tree);
+      divide(halves[0], kept, here, in_vain, tree);
       tree.nodes[node].second = static_cast<std::uint32_t>(tree.nodes.size());
-      divide(halves[1], kept, here, tree);
+      divide(halves[1], kept, here, in_vain, tree);
     }
   }
 
