@@ -150,13 +150,15 @@ TEST(min_radius, says_where_it_cannot_be) {
   }
 }
 
-TEST(min_radius, must_be_positive) {
+TEST(min_radius, must_be_large_enough_to_be_told_from_rounding) {
   const test::Plate plate{test::planar_grid(3, 3, 20, 20)};
   ImpactCurve curve = corner(plate.linker, 1);
-  for (const double radius : {0.0, -1.0, infinity, std::nan("")}) {
+  for (const double radius : {0.0, -1.0, 1e-12, infinity, std::nan("")}) {
+    EXPECT_THROW(check_min_radius(plate.mesh, radius), Error);
     EXPECT_THROW(keep_min_radius(plate.linker, plate.normals, curve, radius), Error);
     EXPECT_THROW(tight_places(plate.mesh, curve, radius), Error);
   }
+  EXPECT_NO_THROW(check_min_radius(plate.mesh, 1e-6));
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "isopath/core/error.h"
@@ -181,6 +183,28 @@ TEST(stroke_order, stops_on_request) {
   } stop;
   test::Rng rng(1);
   EXPECT_THROW(order_runs({random_run(rng), random_run(rng)}, 1, 1, stop), Error);
+}
+
+TEST(stroke_order, enters_open_curves_at_their_ends_and_closed_ones_all_round) {
+  std::vector<Vec3> ring;
+  for (int i = 0; i < 1000; ++i)
+    ring.emplace_back(std::cos(0.002 * std::numbers::pi * i), std::sin(0.002 * std::numbers::pi * i), 0);
+  const std::vector<Gate> open = gates_of_curve(ring, false);
+  ASSERT_EQ(open.size(), 2U);
+  EXPECT_EQ(open[0].entry, std::vector<Vec3>{ring.front()});
+  EXPECT_EQ(open[0].exit, std::vector<Vec3>{ring.back()});
+  EXPECT_EQ(open[1].entry, open[0].exit);
+  EXPECT_EQ(open[1].exit, open[0].entry);
+  const std::vector<Gate> closed = gates_of_curve(ring, true);
+  ASSERT_EQ(closed.size(), 1U);
+  EXPECT_EQ(closed[0].entry, closed[0].exit);
+  EXPECT_LT(closed[0].entry.size(), 60U);
+  for (const Vec3& place : ring) {  // none is farther from a sample than a fortieth of the way round
+    double least = infinity;
+    for (const Vec3& sample : closed[0].entry) least = std::min(least, (sample - place).norm());
+    EXPECT_LT(least, std::numbers::pi / 20);
+  }
+  EXPECT_EQ(samples_of(std::span(ring).first(5), 48).size(), 5U);
 }
 
 TEST(stroke_order, of_nothing_is_nothing) { EXPECT_TRUE(order_runs({}, 1, 1).empty()); }

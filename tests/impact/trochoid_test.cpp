@@ -145,6 +145,7 @@ TEST(GuideLayout, FillsTheRangeSoThatTheFirstHarmonicVanishes) {
   }
   EXPECT_THROW(guide_layout(0, 0, 1, true, true), Error);
   EXPECT_THROW(guide_layout(0, 1, 0, true, true), Error);
+  EXPECT_THROW(guide_layout(0, 1, 1e-9, true, true), Error);
 }
 
 /// Length of covering moves per area, weighted by a Gaussian of this standard deviation.
@@ -202,6 +203,10 @@ TEST(TrochoidalPlan, RefusesWhatItCannotUse) {
                Error);
   const IntrinsicGeometry metric(mesh);
   EXPECT_THROW(plan_impact(mesh, height, {.pattern = Pattern::trochoidal, .spacing = 1, .metric = &metric}), Error);
+  EXPECT_THROW(plan_impact(mesh, height, {.pattern = Pattern::trochoidal, .spacing = 1, .circle_step = 1e-6}), Error);
+  const SurfaceCurve edge = make_curve(mesh, {point_on_halfedge(0, 0), point_on_halfedge(0, 1)});
+  EXPECT_THROW(trochoid(mesh, edge, Vec3::Zero(), {1, 1e-7, 0}), Error);
+  EXPECT_THROW(trochoid(mesh, edge, Vec3::Zero(), {1, 1, 1e-300}), Error);
   EXPECT_THROW(trochoid(mesh, make_curve(mesh, {point_at_vertex(mesh, 7)}), Vec3::Zero(), {1, 1, 0}), Error);
 }
 

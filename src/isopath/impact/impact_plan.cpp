@@ -25,14 +25,6 @@ constexpr double longest_link_in_spacings = 8;
 /// much closer keep it within `widest_corner_gap`, so that ordinary corners need no detours.
 constexpr double pass_allowance = 0.98;
 
-std::vector<Vec3> sample_positions(const TriangleMesh& mesh, const Contour& contour, std::size_t most) {
-  std::vector<Vec3> places;
-  const std::size_t stride = std::max<std::size_t>(1, contour.points.size() / most);
-  for (std::size_t i = 0; i < contour.points.size(); i += stride)
-    places.push_back(position_of(mesh, contour.points[i]));
-  return places;
-}
-
 /// Gate g of a run: bit 0 tells whether it is entered at its last contour, bit 1 (open runs) at the end of a contour's
 /// points.
 std::vector<Gate> gates_of(const TriangleMesh& mesh, const Passes& passes, const Passes::Run& run,
@@ -40,8 +32,10 @@ std::vector<Gate> gates_of(const TriangleMesh& mesh, const Passes& passes, const
   std::vector<Gate> gates;
   const Contour* ends[2] = {&passes.contours[run.contours.front()], &passes.contours[run.contours.back()]};
   if (run.closed) {
-    for (int g = 0; g < 2; ++g)
-      gates.push_back({sample_positions(mesh, *ends[g], samples), sample_positions(mesh, *ends[1 - g], samples)});
+    const auto places = [&](const Contour& ring) {
+      return samples_of(make_curve(mesh, ring.points).positions, samples);
+    };
+    for (int g = 0; g < 2; ++g) gates.push_back({places(*ends[g]), places(*ends[1 - g])});
     return gates;
   }
   const auto place = [&](const Contour& contour, bool at_end) {

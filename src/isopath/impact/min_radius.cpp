@@ -26,6 +26,8 @@ constexpr double radius_tolerance = 0.02;
 constexpr double least_arm = 0.3;
 /// What does not come round is tried with so many times longer legs.
 constexpr int most_tries = 3;
+/// A thousand times the tolerance of the mesh: turns over a part of the radius are still told from rounding.
+constexpr double least_radius_over_size = 1e-9;
 
 /// An interval of arc that turns too tightly, and its worst place.
 struct Tight {
@@ -141,17 +143,20 @@ std::vector<CurveNode> rounded(const SurfaceLinker& linker, std::vector<CurveNod
   return whole;
 }
 
-void validate_radius(double radius) {
-  if (radius > 0 && std::isfinite(radius)) return;
-  throw Error(ErrorCode::bad_usage, "must be a positive length in mm",
-              {.element = "min radius", .value = fmt::format("{}", radius)});
-}
-
 }  // namespace
+
+void check_min_radius(const TriangleMesh& mesh, double radius) {
+  const double least = least_radius_over_size * mesh.size();
+  if (radius >= least && std::isfinite(radius)) return;
+  throw Error(ErrorCode::bad_usage, "the smallest radius of the curve cannot be this",
+              {.element = "min radius",
+               .value = fmt::format("{:.4g} mm, limit {:.4g} mm", radius, least),
+               .advice = "give a larger one, or none"});
+}
 
 std::vector<TightPlace> tight_places(const TriangleMesh& mesh, const ImpactCurve& curve, double radius,
                                      const Progress& progress) {
-  validate_radius(radius);
+  check_min_radius(mesh, radius);
   std::vector<TightPlace> places;
   for (const auto& [first, end] : runs_on_surface(curve)) {
     const WalkedStretch stretch(mesh, nodes_of(curve, first, end));
@@ -163,7 +168,7 @@ std::vector<TightPlace> tight_places(const TriangleMesh& mesh, const ImpactCurve
 
 std::vector<TightPlace> keep_min_radius(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                                         double radius, const Progress& progress) {
-  validate_radius(radius);
+  check_min_radius(linker.mesh(), radius);
   std::vector<std::vector<CurveNode>> runs;
   for (const auto& [first, end] : runs_on_surface(curve)) {
     runs.push_back(nodes_of(curve, first, end));

@@ -9,6 +9,10 @@
 
 namespace isopath {
 
+/// Throws Error(bad_usage) unless the radius is finite and at least 1e-9 of the part's size: of a smaller one the
+/// positions of points do not tell whether a curve keeps it.
+void check_min_radius(const TriangleMesh& mesh, double radius);
+
 /// A place where a curve turns more tightly than it should.
 struct TightPlace {
   Vec3 position = Vec3::Zero();  ///< mm
@@ -21,7 +25,7 @@ inline constexpr double radius_window = 0.5;
 
 /// Where the curve turns on the surface with a radius below `radius`, one place for each stretch of such points.
 /// Lifts do not count, nor does what is within an eighth of the radius of the ends of the stretches between them.
-/// Throws Error(bad_usage) unless the radius is positive, Error(cancelled) on request.
+/// Throws what `check_min_radius` does, and Error(cancelled) on request.
 std::vector<TightPlace> tight_places(const TriangleMesh& mesh, const ImpactCurve& curve, double radius,
                                      const Progress& progress = Progress::none());
 

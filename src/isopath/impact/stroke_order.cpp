@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace isopath {
 namespace {
+
+constexpr std::size_t samples_of_closed_curve = 48;
 
 double least_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double least = infinity;
@@ -113,6 +116,19 @@ void relocate_runs(const GateCosts& gates, Tour& tour, const Progress& progress)
 constexpr std::size_t most_starts = 64;
 
 }  // namespace
+
+std::vector<Vec3> samples_of(std::span<const Vec3> places, std::size_t most) {
+  std::vector<Vec3> samples;
+  const std::size_t stride = std::max<std::size_t>(1, places.size() / most);
+  for (std::size_t i = 0; i < places.size(); i += stride) samples.push_back(places[i]);
+  return samples;
+}
+
+std::vector<Gate> gates_of_curve(std::span<const Vec3> places, bool closed) {
+  if (!closed) return {{{places.front()}, {places.back()}}, {{places.back()}, {places.front()}}};
+  const std::vector<Vec3> samples = samples_of(places, samples_of_closed_curve);
+  return {{samples, samples}};
+}
 
 std::vector<Visit> order_runs(const std::vector<std::vector<Gate>>& runs, double longest_link, double lift_cost,
                               const Progress& progress) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "isopath/core/geometry.h"
@@ -12,6 +14,13 @@ struct Gate {
   std::vector<Vec3> entry;  ///< any of these points: a single end of an open pass, or samples of a closed one
   std::vector<Vec3> exit;
 };
+
+/// Every k-th of some places, so that about `most` are left.
+std::vector<Vec3> samples_of(std::span<const Vec3> places, std::size_t most);
+
+/// The gates of a run that is one curve through these places: from its start and from its end; of a closed one a
+/// single gate, as it is entered and left at any of 48 samples.
+std::vector<Gate> gates_of_curve(std::span<const Vec3> places, bool closed);
 
 /// The run to do next and the gate to enter it by.
 struct Visit {

@@ -26,7 +26,26 @@ constexpr double default_chord_over_radius = 1.0 / 500;
 constexpr double default_radius_over_spacing = 3;
 constexpr double longest_link_in_spacings = 8;
 constexpr double lift_cost_in_spacings = 20;
-constexpr std::size_t samples_of_closed_guide = 48;
+/// More is a slip of the keyboard or of the unit, and would take all memory.
+constexpr double most_guides = 20000;
+constexpr double most_points = 2e7;
+
+/// Between two points of a circle with a chord that keeps the tolerance.
+double widest_angle(const CircleOptions& options) {
+  const double tolerance =
+      options.chord_tolerance > 0 ? options.chord_tolerance : default_chord_over_radius * options.radius;
+  return 2 * std::acos(std::max(0.0, 1 - tolerance / options.radius));
+}
+
+/// Refuses circles that make more points of a guide, or of several of this length together, than anybody wants.
+void check_points(double length, const CircleOptions& options) {
+  const double points = (1 + length / options.step) * full_turn / widest_angle(options);
+  if (points <= most_points) return;
+  throw Error(ErrorCode::bad_usage, "the circles lie too close for the part",
+              {.element = "circle step",
+               .value = fmt::format("{:.4g} mm makes {:.3g} points, limit {}", options.step, points, most_points),
+               .advice = "give a larger one, or the unit of the mesh file when that is not mm"});
+}
 
 double signed_angle(const Vec3& from, const Vec3& to, const Vec3& normal) {
   return std::atan2(normal.dot(from.cross(to)), from.dot(to));
@@ -145,6 +164,9 @@ class TrochoidPlanner {
                    .value = fmt::format("{} mm", asked),
                    .advice = "the source reaches nothing, or the part is too narrow: give a smaller radius"});
     }
+    double length = 0;
+    for (const Contour& guide : plan.contours) length += length_of(mesh_, guide);
+    check_points(length, circle_);
     progress_.stage("curve");
     CurveAssembly assembly(linker_, normals_,
                            {std::max(longest_link_in_spacings * options_.spacing, 4 * circle_.radius),
@@ -196,19 +218,7 @@ class TrochoidPlanner {
   std::vector<Visit> order(const std::vector<Contour>& guides) const {
     std::vector<std::vector<Gate>> gates;
     for (const Contour& guide : guides) {
-      const Vec3 first = position_of(mesh_, guide.points.front());
-      const Vec3 last = position_of(mesh_, guide.points.back());
-      if (!guide.closed) {
-        gates.push_back({{{first}, {last}}, {{last}, {first}}});
-        continue;
-      }
-      Gate gate;
-      const std::size_t stride = std::max<std::size_t>(1, guide.points.size() / samples_of_closed_guide);
-      for (std::size_t i = 0; i < guide.points.size(); i += stride) {
-        gate.entry.push_back(position_of(mesh_, guide.points[i]));
-      }
-      gate.exit = gate.entry;
-      gates.push_back({gate});
+      gates.push_back(gates_of_curve(make_curve(mesh_, guide.points).positions, guide.closed));
     }
     return order_runs(gates, longest_link_in_spacings * options_.spacing, lift_cost_in_spacings * options_.spacing,
                       progress_);
@@ -253,6 +263,7 @@ std::vector<CirclePoint> trochoid(const TriangleMesh& mesh, const SurfaceCurve& 
   options.validate();
   const Guide guide(mesh, curve);
   if (guide.empty()) throw Error(ErrorCode::bad_usage, "a guiding curve needs a length");
+  check_points(guide.length(), options);
   const double holonomy = guide.closed() ? guide.holonomy() : 0;
   const double turns = std::max(1.0, std::round(guide.length() / options.step + holonomy / full_turn));
   const double total = turns * full_turn - holonomy;
@@ -264,10 +275,7 @@ std::vector<CirclePoint> trochoid(const TriangleMesh& mesh, const SurfaceCurve& 
   const bool points_somewhere = flat.norm() > 1e-6 * options.radius;
   const double first = points_somewhere ? signed_angle(start.parallel, flat, normal) : 0.5 * std::numbers::pi;
 
-  const double tolerance =
-      options.chord_tolerance > 0 ? options.chord_tolerance : default_chord_over_radius * options.radius;
-  const double widest = 2 * std::acos(std::max(0.0, 1 - tolerance / options.radius));
-  const auto n = static_cast<std::size_t>(std::ceil(std::abs(total) / widest));
+  const auto n = static_cast<std::size_t>(std::ceil(std::abs(total) / widest_angle(options)));
   std::vector<CirclePoint> trace;
   for (std::size_t k = 0; k <= n; ++k) {
     if (k % 256 == 0) progress.checkpoint();
@@ -289,6 +297,12 @@ GuideLayout guide_layout(double low, double high, double radius, bool rim_at_low
   const double above = rim_at_high ? radius_over_distance : 0.5;
   const double range = high - low;
   const double between = std::max(0.0, std::ceil(range * radius_over_distance / radius - below - above));
+  if (!(between < most_guides)) {
+    throw Error(ErrorCode::bad_usage, "the circles are too small for the part",
+                {.element = "circle radius",
+                 .value = fmt::format("{:.4g} mm needs {:.3g} guides, limit {}", radius, between + 1, most_guides),
+                 .advice = "give a larger one, or the unit of the mesh file when that is not mm"});
+  }
   GuideLayout layout;
   layout.distance = range / (below + above + between);
   layout.radius = radius_over_distance * layout.distance;

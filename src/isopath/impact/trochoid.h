@@ -27,7 +27,8 @@ struct CirclePoint {
 /// direction from centre to point turns evenly against one that is carried along the guide in parallel, so that corners
 /// of the guide make no corners in the trace. It starts in the direction of `towards`; that of a closed guide, whose
 /// first point is repeated at its end, ends where it begins.
-/// Throws Error(bad_usage) for invalid options or a guide without length, Error(cancelled) on request.
+/// Throws Error(bad_usage) for invalid options, for more than 2e7 points and for a guide without length,
+/// Error(cancelled) on request.
 std::vector<CirclePoint> trochoid(const TriangleMesh& mesh, const SurfaceCurve& guide, const Vec3& towards,
                                   const CircleOptions& options, const Progress& progress = Progress::none());
 
@@ -44,7 +45,7 @@ struct GuideLayout {
 ///
 /// Levels fill the range from `low` to `high`. At a rim the outermost guide is a radius away, so that circles touch it;
 /// elsewhere half a distance, as another guide lies on the other side. Throws Error(bad_usage) unless radius > 0 and
-/// low < high.
+/// low < high, and for more than 20000 levels.
 GuideLayout guide_layout(double low, double high, double radius, bool rim_at_low, bool rim_at_high);
 
 /// Covers a surface with circles along the isolines of a function (Pattern::trochoidal). Throws what `plan_impact`

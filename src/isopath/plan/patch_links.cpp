@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
@@ -23,7 +25,6 @@ constexpr double lift_cost_in_spacings = 20;
 constexpr double widest_joint_in_spacings = 1.6;
 /// The way between them over the surface.
 constexpr double longest_joint_in_spacings = 3;
-constexpr std::size_t samples_of_closed_curve = 48;
 
 /// Where two curves run side by side.
 struct Joint {
@@ -65,15 +66,11 @@ void start_near(PatchCurve& curve, const Vec3& place) {
 }
 
 std::vector<Gate> gates_of(const PatchCurve& curve) {
-  const Vec3 first = curve.stretches.front().front().position;
-  const Vec3 last = curve.stretches.back().back().position;
-  if (!curve.closed) return {{{first}, {last}}, {{last}, {first}}};
-  Gate gate;
-  const Stretch& stretch = curve.stretches.front();
-  const std::size_t stride = std::max<std::size_t>(1, stretch.size() / samples_of_closed_curve);
-  for (std::size_t i = 0; i < stretch.size(); i += stride) gate.entry.push_back(stretch[i].position);
-  gate.exit = gate.entry;
-  return {gate};
+  std::vector<Vec3> places;
+  for (const Stretch& stretch : curve.stretches) {
+    for (const auto& point : stretch) places.push_back(point.position);
+  }
+  return gates_of_curve(places, curve.closed);
 }
 
 /// The covering points of curves in cells, to find what lies near.

@@ -19,6 +19,7 @@
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/finish_curve.h"
 #include "isopath/impact/level_spiral.h"
+#include "isopath/impact/min_radius.h"
 #include "isopath/plan/auto_pattern.h"
 #include "isopath/plan/gap_choice.h"
 #include "isopath/plan/hole_bridges.h"
@@ -541,6 +542,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (auto warning = warning_of_size(mesh.size())) result.warnings.push_back(*std::move(warning));
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
+  if (job.min_radius > 0) check_min_radius(mesh, job.min_radius);
   std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
   if (job.partition.by != PartitionBy::none) {
     plan_by_patches(result, clock, progress);
