@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <deque>
 #include <limits>
 #include <numbers>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -144,6 +144,8 @@ class ListPropagation {
   /// Lists from three sides wait at a half-edge: from two edges of the face before it, and from its third corner.
   enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };
 
+  /// Lists of the fronts that leave the sources' faces.
+  void put_down_fronts(const std::vector<SourceFronts::Front>& fronts);
   void push_halfedge(Index halfedge, double least, Workshop& workshop);
   void offer_vertex(const Offer& offer);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,

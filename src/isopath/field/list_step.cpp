@@ -7,8 +7,10 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #ifndef ISOPATH_FIELD_SET_BITS
@@ -221,15 +223,19 @@ Winners winners(const Windows& a, const Windows& b, V at, V slack, M present) {
   return {hn::AndNot(a.longer_or_equal(way, below), present), hn::And(present, a.longer(way, above))};
 }
 
-bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margin, double* begin, double* end) {
-  // Most lists overlap only at ridges, two by two; there, the vertices do the work sooner or later.
+/// Most lists overlap only at ridges, two by two; there, the vertices do the work sooner or later.
+bool lie_three_deep(const WindowArrays& windows, std::size_t n) {
   std::size_t crowded = 0;
   for (std::size_t i = 0; i + 2 < n; i += hn::Lanes(d)) {
     const M triples = hn::FirstN(d, n - 2 - i);
     crowded +=
         hn::CountTrue(d, hn::And(triples, hn::Gt(hn::LoadU(d, windows.end + i), hn::LoadU(d, windows.begin + i + 2))));
   }
-  if (4 * crowded < n) return false;
+  return 4 * crowded >= n;
+}
+
+bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margin, double* begin, double* end) {
+  if (!lie_three_deep(windows, n)) return false;
   const V slack = all(margin);
   begin[0] = windows.begin[0];
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
