@@ -101,7 +101,7 @@ class ArcChains {
 class Pruner {
  public:
   Pruner(const TriangleMesh& mesh, const BisectorGraph& graph, double ratio)
-      : mesh_(mesh), graph_(graph), ratio_(ratio), arcs_at_(graph.nodes.size()) {
+      : graph_(graph), ratio_(ratio), arcs_at_(graph.nodes.size()) {
     for (std::size_t k = 0; k < graph.arcs.size(); ++k) {
       lengths_.push_back(length_of_points(mesh, graph.arcs[k].points));
       arcs_at_[graph.arcs[k].from].insert(static_cast<Index>(k));
@@ -114,7 +114,7 @@ class Pruner {
     while (!twigs_.empty()) {
       const auto [measure, leaf, arc] = *twigs_.begin();
       twigs_.erase(twigs_.begin());
-      const auto [from, inner] = twig_at(leaf);
+      const Index inner = inner_end(leaf);
       // the others at its node may have gone since, or the twig may have grown
       if (inner == no_index || arcs_at_[inner].size() < 3 || *arcs_at_[leaf].begin() != arc) continue;
       if (lengths_[arc] >= ratio_ * graph_.nodes[inner].clearance) continue;
@@ -132,15 +132,15 @@ class Pruner {
   }
 
  private:
-  /// The leaf and the node that its arc leads to; none where it is no leaf.
-  std::pair<Index, Index> twig_at(Index leaf) const {
-    if (arcs_at_[leaf].size() != 1) return {leaf, no_index};
+  /// The node that a leaf's arc leads to; none where it is no leaf.
+  Index inner_end(Index leaf) const {
+    if (arcs_at_[leaf].size() != 1) return no_index;
     const Arc& arc = graph_.arcs[*arcs_at_[leaf].begin()];
-    return {leaf, arc.from == arc.to ? no_index : arc.from == leaf ? arc.to : arc.from};
+    return arc.from == arc.to ? no_index : arc.from == leaf ? arc.to : arc.from;
   }
 
   void consider_leaf(Index leaf) {
-    const auto [from, inner] = twig_at(leaf);
+    const Index inner = inner_end(leaf);
     if (inner == no_index || arcs_at_[inner].size() < 3) return;
     const Index arc = *arcs_at_[leaf].begin();
     const double measure = lengths_[arc] / graph_.nodes[inner].clearance;
@@ -172,7 +172,6 @@ class Pruner {
     consider_leaf(first.to);
   }
 
-  const TriangleMesh& mesh_;
   BisectorGraph graph_;
   double ratio_;
   std::vector<double> lengths_;

@@ -77,7 +77,8 @@ void spread_down(const TriangleMesh& mesh, double fall, std::vector<double>& val
   }
   for (std::size_t n = 0; !open.empty(); ++n) {
     if (n % 4096 == 0) progress.checkpoint();
-    const auto [height, v] = open.top();
+    const double height = open.top().first;
+    const Index v = open.top().second;
     open.pop();
     if (height < value[v]) continue;
     for_neighbours(mesh, v, [&](Index to, double length) {

@@ -1,7 +1,7 @@
 #include "isopath/contour/descent.h"
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
 #include "isopath/core/segment.h"
 

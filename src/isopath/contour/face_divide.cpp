@@ -1,8 +1,9 @@
 // How a face with an ambiguous or hidden level set is divided: the 1-to-4 subdivision of the paper's chapter 5, with
 // crossings on the new edges found by a search that cannot miss one of a function of bounded slope.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "isopath/contour/face_cut.h"
 #include "isopath/core/segment.h"

@@ -4,10 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
-#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "isopath/contour/face_bisectors.h"
 #include "isopath/core/error.h"

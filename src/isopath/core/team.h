@@ -18,6 +18,9 @@ namespace isopath {
 /// members of a team wait busily instead, from the first loop that is worth sharing until the team ends: keep it for
 /// one computation. They are tasks of TBB: as many threads work as its limits allow, and where all are busy elsewhere
 /// the caller does the whole loop.
+///
+/// While a team is awake, neither its owner nor the work it shares may wait for other tasks of TBB: who waits may take
+/// up a member's part meanwhile, of this team or of another one, and is not back before that team ends.
 class Team {
  public:
   Team();
@@ -31,7 +34,8 @@ class Team {
   /// Calls work(first, past, member) for parts of [0, n), at the same time, each of `at_a_time` items or fewer unless
   /// the whole loop is too short to be worth sharing. Returns after the last of them; throws what one of them threw.
   /// Member k begins with the k-th share of the items: where loops follow each other over the same things, it finds in
-  /// its cache what it left there. One loop at a time, always from the same thread, which is member 0.
+  /// its cache what it left there. One loop at a time, always from the same thread, which is member 0; of fewer than
+  /// 2³² - 1 items.
   template <class Work>
   void share(std::size_t n, std::size_t at_a_time, const Work& work) {
     const auto call = [](const void* what, std::size_t first, std::size_t past, std::size_t member) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/intrinsic_geometry.h"
@@ -118,7 +120,8 @@ class Disc {
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (const Near& near : found_) queue.push({distance_[near.vertex], near.vertex});
     while (!queue.empty()) {
-      const auto [distance, vertex] = queue.top();
+      const double distance = queue.top().first;
+      const Index vertex = queue.top().second;
       queue.pop();
       if (distance > distance_[vertex]) continue;
       const auto step = [&](Index other, double length) {

@@ -1,6 +1,7 @@
 #include "isopath/field/edge_envelope.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isopath {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "isopath/field/edge_envelope.h"
 #include "isopath/field/list_propagation.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "isopath/core/error.h"
 #include "isopath/field/smooth_field_checks.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "isopath/core/error.h"
@@ -106,12 +107,12 @@ class Splitter {
 
  private:
   bool has_mark(const RefineTriangle& triangle) const {
-    const std::vector<Vec3>& marks = marks_[triangle.face];
-    if (marks.empty()) return false;
+    const std::vector<Vec3>& in_face = marks_[triangle.face];
+    if (in_face.empty()) return false;
     Eigen::Matrix3d corners;
     for (int i = 0; i < 3; ++i) corners.col(i) = triangle.barycentric[i];
     const Eigen::Matrix3d inverse = corners.inverse();  // all barycentric coordinates sum to 1, so it exists
-    return std::any_of(marks.begin(), marks.end(), [&](const Vec3& at) { return (inverse * at).minCoeff() >= 0; });
+    return std::any_of(in_face.begin(), in_face.end(), [&](const Vec3& at) { return (inverse * at).minCoeff() >= 0; });
   }
 
   const TriangleMesh& mesh_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "isopath/field/exact_field_data.h"
 
 namespace isopath {

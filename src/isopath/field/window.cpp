@@ -1,5 +1,6 @@
 #include "isopath/field/window.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace isopath {

@@ -1,6 +1,7 @@
 #include "isopath/field/window_merge.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isopath {
 namespace {

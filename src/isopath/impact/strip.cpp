@@ -1,7 +1,6 @@
 #include "isopath/impact/strip.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <queue>

@@ -1,6 +1,7 @@
 #include "isopath/impact/surface_curve.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "isopath/core/quiet_progress.h"
 #include "isopath/field/exact_field.h"

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/mesh/mesh_formats.h"

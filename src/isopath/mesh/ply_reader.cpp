@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/mesh/mesh_formats.h"

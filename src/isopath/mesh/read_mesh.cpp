@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
+#include <string_view>
+#include <utility>
 
 #include "isopath/core/error.h"
 #include "isopath/mesh/repair_steps.h"

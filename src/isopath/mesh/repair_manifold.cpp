@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "isopath/mesh/edge_table.h"
 #include "isopath/mesh/repair_steps.h"

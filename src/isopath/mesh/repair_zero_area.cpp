@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <queue>
 #include <utility>
+#include <vector>
 
 #include "isopath/mesh/repair_steps.h"
 #include "isopath/mesh/triangle_shape.h"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "isopath/core/error.h"

@@ -6,9 +6,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <utility>
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"

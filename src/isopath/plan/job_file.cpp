@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"

@@ -1,9 +1,8 @@
 #include "isopath/plan/nested_plan.h"
 
-#include <fmt/format.h>
+#include <utility>
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
 
 #include "isopath/core/error.h"
 #include "isopath/field/exact_field.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "isopath/contour/medial_axis.h"
 #include "isopath/field/refine_for_field.h"

@@ -1,6 +1,5 @@
 #include "isopath/post/base64.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <string_view>
