@@ -110,7 +110,7 @@ std::vector<SurfaceCurve> joined_to_curve(const SurfaceLinker& linker, const Sur
   const std::vector<RingJoint> joints = choose_joints(linker, rings, spacing, progress);
   std::vector<SurfaceCurve> joined = JoinedRings(rings, joints).walk_all();
   const bool has_joint = std::any_of(joints.begin(), joints.end(), [](const RingJoint& joint) {
-    return joint.cuts[0].ring == 0 || joint.cuts[1].ring == 0;
+    return std::any_of(joint.cuts.begin(), joint.cuts.end(), [](const RingJoint::Cut& cut) { return cut.ring == 0; });
   });
   // the first one holds the curve, and begins anywhere on it
   SurfaceCurve& whole = joined.front();
