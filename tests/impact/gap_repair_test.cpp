@@ -15,6 +15,7 @@
 #include "isopath/impact/near_places.h"
 #include "isopath/impact/open_spots.h"
 #include "isopath/impact/ridge_passes.h"
+#include "isopath/impact/spot_patch.h"
 
 namespace isopath {
 namespace {
@@ -210,9 +211,10 @@ TEST(gap_repair, swells_a_round_curve_without_turning_it_back) {
       close_wide_gaps(plate.linker, plate.normals, curve, {.spacing = w, .radius = radius, .round = true});
   ASSERT_GT(changes, 0);
   test::expect_valid(plate.mesh, curve);
-  EXPECT_LE(measure_gap(plate.mesh, curve, w).max, widest_gap * w * 1.005);
+  EXPECT_LE(measure_gap(plate.mesh, curve, w).max, (widest_gap + 0.02) * w);
   // h cos² over a width of 2 b is longer than straight on by π² h² / 8 b at most; a full turn by 2 π radius
   EXPECT_LT(length_of(curve, MoveKind::cover) - length_before, changes * 0.25 * 2 * std::numbers::pi * radius);
+  int elsewhere = 0;
   for (const TightPlace& tight : tight_places(plate.mesh, curve, 0.9 * radius)) {
     // the plate's corners are out of reach for swells, and full turns there meet the curve near a bend
     const Vec3 from_middle = (tight.position - Vec3(12, 12, 0)).cwiseAbs();
@@ -220,8 +222,110 @@ TEST(gap_repair, swells_a_round_curve_without_turning_it_back) {
     const bool was = std::any_of(tight_before.begin(), tight_before.end(), [&](const TightPlace& before) {
       return (before.position - tight.position).norm() < radius;
     });
-    EXPECT_TRUE(at_corner || was) << tight.position.transpose();
+    elsewhere += at_corner || was ? 0 : 1;
   }
+  // beside another swell there may be room for a full turn only
+  EXPECT_LE(elsewhere, 0.05 * changes);
+}
+
+/// A plate of side 20 and passes on it, folded at x = 10 so that its halves stand that angle apart; flat for π.
+struct FoldedPlate {
+  FoldedPlate(double angle, const std::vector<double>& xs) : plate{folded(angle)} {
+    const test::Plate flat{test::planar_grid(20, 15, 20, 20)};
+    curve = test::parallel_lines(flat.linker, xs, 20);
+    for (ImpactPoint& p : curve.points) {
+      p.position = position_of(plate.mesh, p.at);
+      p.normal = plate.normals.at(p.at);
+    }
+  }
+
+  static TriangleMesh folded(double angle) {
+    const TriangleMesh flat = test::planar_grid(20, 15, 20, 20);
+    TriangleSoup soup;
+    for (Index v = 0; v < flat.n_vertices(); ++v) {
+      const Vec3& p = flat.position(v);
+      const double beyond = std::max(0.0, p.x() - 10);
+      soup.positions.emplace_back(std::min(p.x(), 10.0) - beyond * std::cos(angle), p.y(), beyond * std::sin(angle));
+    }
+    for (Index f = 0; f < flat.n_faces(); ++f) soup.triangles.push_back(flat.triangle(f));
+    return TriangleMesh(std::move(soup));
+  }
+
+  test::Plate plate;
+  ImpactCurve curve;
+};
+
+constexpr double fold_angles[] = {std::numbers::pi, 2.0, 0.9, 0.05, 0.002};
+/// The strip in the middle is wider than it should be, but not wide enough for a loop.
+const std::vector<double> with_a_wide_strip{1, 3, 5, 7, 8.9, 11.1, 13, 15, 17, 19};
+
+TEST(gap_repair, closes_a_long_narrow_gap_along_a_fold_by_many_small_bumps) {
+  for (const double angle : fold_angles) {
+    SCOPED_TRACE(testing::Message() << "angle " << angle);
+    FoldedPlate folded(angle, with_a_wide_strip);
+    const double w = 2;
+    const ImpactCurve before = folded.curve;
+    ASSERT_NEAR(measure_gap(folded.plate.mesh, before, w).max, 1.1 * w, 0.01 * w);
+    EXPECT_GT(close_wide_gaps(folded.plate.linker, folded.plate.normals, folded.curve, {.spacing = w}), 5);
+    test::expect_valid(folded.plate.mesh, folded.curve);
+    EXPECT_LE(measure_gap(folded.plate.mesh, folded.curve, w).max, widest_gap * w * 1.005);
+    EXPECT_EQ(length_of(folded.curve, MoveKind::link), length_of(before, MoveKind::link));
+    // A pass more would add 20. A tip every 0.3 w, 0.07 w high on a base of 0.12 w: 0.21 of that.
+    EXPECT_LT(length_of(folded.curve, MoveKind::cover) - length_of(before, MoveKind::cover), 0.4 * 20);
+  }
+}
+
+TEST(spot_patch, measures_along_the_surface) {
+  for (const double angle : fold_angles) {
+    SCOPED_TRACE(testing::Message() << "angle " << angle);
+    const FoldedPlate folded(angle, with_a_wide_strip);
+    const TriangleMesh& mesh = folded.plate.mesh;
+    const CoverField cover = distance_from_cover(mesh, folded.curve, 2, Progress::none());
+    const std::vector<OpenSpot> spots = open_spots(cover.field, 0.515 * 2, 0.02);
+    ASSERT_GE(spots.size(), 1u);  // all along the fold
+    SurfaceCurve way;
+    for (const ImpactPoint& p : folded.curve.points) {
+      const double y = p.position.y();
+      if (p.kind == MoveKind::cover && std::abs(y - 10) < 3 && (way.empty() || y != way.positions.back().y()))
+        way.add(mesh, p.at);
+      if (!way.empty() && std::abs(y - 10) >= 3) break;
+    }
+    ASSERT_GT(way.size(), 2u);
+    SourceSet source;
+    source.add_polyline(mesh, way.points, false);
+    const ExactField field = ExactField::compute(mesh, source);
+    // the first pass is some way off
+    for (const double reach : {1.0, 30.0}) {
+      const SpotPatch patch(mesh, spots.front(), reach, Progress::none());
+      EXPECT_EQ(patch.nearly_flat(), angle == std::numbers::pi);
+      const std::vector<double> distances = patch.distances_from(way);
+      ASSERT_EQ(distances.size(), spots.front().cells.size());
+      for (std::size_t k = 0; k < distances.size(); ++k) {
+        const double exact = field.value(spots.front().cells[k].at);
+        if (exact <= 1.5 * reach) {
+          EXPECT_NEAR(distances[k], exact, 2e-3 * reach);
+        } else {
+          EXPECT_GT(distances[k], 1.4 * reach);
+        }
+      }
+    }
+  }
+}
+
+TEST(open_spots, are_cut_in_two_with_all_their_cells) {
+  const FoldedPlate folded(std::numbers::pi, with_a_wide_strip);
+  const CoverField cover = distance_from_cover(folded.plate.mesh, folded.curve, 2, Progress::none());
+  const std::vector<OpenSpot> spots = open_spots(cover.field, 0.515 * 2, 0.02);
+  ASSERT_EQ(spots.size(), 1u);
+  const std::vector<OpenSpot> halves = halves_of(spots.front(), 1);
+  ASSERT_EQ(halves.size(), 2u);
+  EXPECT_EQ(halves[0].cells.size() + halves[1].cells.size(), spots.front().cells.size());
+  for (const SpotCell& a : halves[0].cells) EXPECT_LT(a.position.y(), 10 + 1e-9);
+  for (const SpotCell& b : halves[1].cells) EXPECT_GT(b.position.y(), 10 - 1e-9);
+  for (const OpenSpot& half : halves) {
+    for (const SpotCell& cell : half.cells) EXPECT_LE(cell.distance, half.cells.front().distance);
+  }
+  EXPECT_TRUE(halves_of(spots.front(), 21).empty());
 }
 
 TEST(gap_repair, sees_with_each_round_what_the_whole_field_shows) {

@@ -51,6 +51,15 @@ TEST(SubMesh, EveryFaceGoesToItsPart) {
     for (Index& l : label) l = test::random_index(rng, 3);
     label[0] = 2;
     expect_split(mesh, label, split_mesh(mesh, label));
+    std::vector<SubMesh> one_by_one;
+    for (Index part = 0; part <= 2; ++part) {
+      std::vector<Index> faces;
+      for (Index f = 0; f < mesh.n_faces(); ++f) {
+        if (label[f] == part) faces.push_back(f);
+      }
+      one_by_one.push_back(sub_mesh(mesh, faces));
+    }
+    expect_split(mesh, label, one_by_one);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/impact/spot_patch.h"
 #include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
@@ -16,6 +17,8 @@ namespace {
 constexpr double low_bump = 0.25;
 constexpr double broad_base = 0.3;
 constexpr double narrow_base = 0.13;
+/// Half a spacing from the curve this leaves less than a hundredth of a gap.
+constexpr double slim_base = 0.06;
 /// The curve may leave what it covered before by so much, in spacings.
 constexpr double most_left = 0.16;
 /// Bumps are tried in steps of this, in spacings.
@@ -50,15 +53,6 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + t * side - p).norm();
 }
 
-/// What is longer than this many times the straight way is not counted as a way over an edge.
-constexpr double most_factor = 2;
-
-/// 1 / cos(θ/2): over an edge of angle θ the way on the surface is at most so many times as long as the straight one.
-double most_over_straight(const TriangleMesh& mesh, Index face, Index other) {
-  const double cos_of_half = std::sqrt(std::max(0.0, 0.5 * (1 + mesh.face_normal(face).dot(mesh.face_normal(other)))));
-  return 1 / std::max(cos_of_half, 1 / most_factor);
-}
-
 class BumpBuilder {
  public:
   BumpBuilder(const SurfaceLinker& linker, const SmoothNormals& normals, const ImpactCurve& curve,
@@ -69,13 +63,13 @@ class BumpBuilder {
         curve_(curve),
         cover_(cover),
         spot_(spot),
-        radius_(limits.radius) {
-    // a metric is taken for a scale of lengths in space as small as a spot
-    const double in_space = distance_in_space(spot.cells.front());
-    const double scale = in_space > 0 ? in_space / spot.cells.front().distance : 1;
-    limit_ = scale * limits.reach;
-    spacing_ = scale * limits.spacing;
-  }
+        radius_(limits.radius),
+        slim_(limits.slim),
+        // a metric is taken for a scale of lengths in space as small as a spot
+        scale_(scale_of_lengths()),
+        limit_(scale_ * limits.reach),
+        spacing_(scale_ * limits.spacing),
+        patch_(mesh_, spot, limit_, limits.progress) {}
 
   std::optional<Replacement> best_turn() const {
     std::optional<Circle> best;
@@ -90,7 +84,9 @@ class BumpBuilder {
       }
     }
     if (!best || best->left == spot_.cells.size()) return std::nullopt;
-    return replacement({best->foot, {best->foot.after + 1, best->foot.at, best->foot.position}, best->points, {}, 0});
+    std::vector<SurfacePoint> between(best->points.begin() + 1, best->points.end() - 1);
+    return replacement(
+        {best->foot, {best->foot.after + 1, best->foot.at, best->foot.position}, std::move(between), {}, 0});
   }
 
   std::optional<Replacement> best_swell() const { return cheapest(&BumpBuilder::swell_from); }
@@ -101,26 +97,27 @@ class BumpBuilder {
     CurvePlace start;
     CurvePlace end;
     std::vector<SurfacePoint> control;  ///< the way between both
-    std::vector<Vec3> reached;          ///< where that way will be once it is rounded
+    std::vector<SurfacePoint> reached;  ///< where that way will be once it is rounded, with both
     double cost = 0;                    ///< length added, mm
   };
   struct Circle {
     CurvePlace foot;
     double radius = 0;
-    std::vector<SurfacePoint> points;
-    std::size_t left = 0;  ///< cells out of reach
+    std::vector<SurfacePoint> points;  ///< from the foot to the foot
+    std::size_t left = 0;              ///< cells out of reach
   };
 
-  double distance_in_space(const SpotCell& cell) const {
-    return length_of(make_curve(mesh_, cover_.field.shortest_path(cell.at)));
+  double scale_of_lengths() const {
+    const SpotCell& top = spot_.cells.front();
+    const double in_space = length_of(make_curve(mesh_, cover_.field.shortest_path(top.at)));
+    return in_space > 0 ? in_space / top.distance : 1;
   }
 
   /// The one that lengthens the curve least, of those from each place near the spot.
-  std::optional<Replacement> cheapest(std::optional<Bump> (BumpBuilder::*from)(const CurvePlace&) const) const {
+  std::optional<Replacement> cheapest(std::optional<Bump> (BumpBuilder::*from)(const CurvePlace&, double) const) const {
     std::optional<Bump> least;
     for (const CurvePlace& foot : feet()) {
-      std::optional<Bump> bump = (this->*from)(foot);
-      if (bump && (!least || bump->cost < least->cost)) least = std::move(bump);
+      if (auto bump = (this->*from)(foot, least ? least->cost : infinity)) least = std::move(bump);
     }
     if (!least) return std::nullopt;
     return replacement(*least);
@@ -135,7 +132,7 @@ class BumpBuilder {
       const SpotCell& cell = spot_.cells[asked];
       const std::vector<SurfacePoint> way = cover_.field.shortest_path(cell.at);
       if (!way.empty()) {
-        const SurfacePoint& at = way.back();
+        const SurfacePoint at{way.back().face, snapped(way.back().barycentric)};
         const Vec3 position = position_of(mesh_, at);
         const bool known = std::any_of(feet.begin(), feet.end(), [&](const CurvePlace& foot) {
           return (foot.position - position).norm() < 0.05 * spacing_;
@@ -158,7 +155,8 @@ class BumpBuilder {
   SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double t) const {
     const Index face = common_face(mesh_, a, b);
     if (face == no_index) return t < 0.5 ? a : b;  // a step shorter than the tolerance, past a vertex
-    return {face, (1 - t) * express_in(mesh_, a, face).barycentric + t * express_in(mesh_, b, face).barycentric};
+    return {face,
+            snapped((1 - t) * express_in(mesh_, a, face).barycentric + t * express_in(mesh_, b, face).barycentric)};
   }
 
   /// From a place to point i of the curve, or as far as `length` lasts: then true.
@@ -190,17 +188,20 @@ class BumpBuilder {
     return place;
   }
 
-  /// The lowest bump from a foot towards the top of the spot that reaches all of it.
-  std::optional<Bump> bump_from(const CurvePlace& foot) const {
+  /// The lowest bump from a foot towards the top of the spot that reaches all of it, unless that costs too much.
+  std::optional<Bump> bump_from(const CurvePlace& foot, double most_cost) const {
     const SpotCell& top = spot_.cells.front();
     const auto way = linker_.link(foot.at, top.at, 2 * spacing_);
     if (!way || way->size() < 2) return std::nullopt;
     const double full = length_of(*way);
-    for (double height = height_step * spacing_;; height += height_step * spacing_) {
-      height = std::min(height, full);
+    for (double height = std::min(height_step * spacing_, full);;) {
       auto bump = bump_to(foot, *way, height);
-      if (bump && reaches_all(bump->reached)) return bump;
+      if (bump && bump->cost >= most_cost) return std::nullopt;
+      const double missing = bump ? farthest_from(bump->reached) - limit_ : 0;
+      if (bump && missing <= 0) return bump;
       if (height >= full) return std::nullopt;
+      // no point of a bump moves farther than its tip
+      height = std::min(full, height + std::max(height_step * spacing_, std::min(missing, full)));
     }
   }
 
@@ -225,17 +226,19 @@ class BumpBuilder {
   std::optional<Bump> bump_to(const CurvePlace& foot, const SurfaceCurve& way, double height) const {
     Bump bump;
     double dropped = 0;
-    Vec3 tip = position_of(mesh_, on_way(way, height));
-    for (double base = spacing_ * (height < low_bump * spacing_ ? broad_base : narrow_base);; base /= 2) {
+    const SurfacePoint tip_point = on_way(way, height);
+    const Vec3 tip = position_of(mesh_, tip_point);
+    const double widest_base = slim_ ? slim_base : height < low_bump * spacing_ ? broad_base : narrow_base;
+    for (double base = spacing_ * widest_base;; base /= 2) {
       bump.start = back(foot, base);
       bump.end = forth(foot, base);
       if (base < 0.02 * spacing_ || leaves_little(bump, foot, tip, dropped)) break;
     }
-    bump.reached = {bump.start.position, tip, bump.end.position};
+    bump.reached = {bump.start.at, tip_point, bump.end.at};
     double loss = rounded_off(bump.start.position, tip, bump.end.position);
     if (loss <= most_rounded_off * spacing_) {
       bump.control = {on_way(way, height + loss)};
-    } else if (!add_flat_tip(on_way(way, height), bump)) {
+    } else if (!add_flat_tip(tip_point, bump)) {
       return std::nullopt;
     }
     Vec3 last = bump.start.position;
@@ -280,16 +283,27 @@ class BumpBuilder {
     return little;
   }
 
-  std::size_t out_of_reach(const std::vector<Vec3>& way, Index face) const {
-    return static_cast<std::size_t>(std::count_if(spot_.cells.begin(), spot_.cells.end(), [&](const SpotCell& cell) {
-      double straight = infinity;
-      for (std::size_t i = 1; i < way.size(); ++i)
-        straight = std::min(straight, distance_to_segment(cell.position, way[i - 1], way[i]));
-      if (cell.at.face == face || straight > limit_ || most_factor * straight <= limit_) return straight > limit_;
-      return straight * most_over_straight(mesh_, face, cell.at.face) > limit_;
-    }));
+  /// The way over some points, along the surface unless straight distances from it will do. Empty where there is none.
+  SurfaceCurve way_over(const std::vector<SurfacePoint>& points) const {
+    if (patch_.nearly_flat()) return make_curve(mesh_, points);
+    SurfaceCurve way;
+    way.add(mesh_, points.front());
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const auto step = linker_.link(points[i - 1], points[i], 4 * spacing_);
+      if (!step) return {};
+      for (std::size_t k = 1; k < step->size(); ++k) way.add(mesh_, step->points[k]);
+    }
+    return way;
   }
-  bool reaches_all(const std::vector<Vec3>& way) const { return out_of_reach(way, spot_.cells.front().at.face) == 0; }
+  std::vector<double> distances_from(const std::vector<SurfacePoint>& points) const {
+    const SurfaceCurve way = way_over(points);
+    return way.empty() ? std::vector<double>(spot_.cells.size(), infinity) : patch_.distances_from(way);
+  }
+  /// How far the spot goes from a way.
+  double farthest_from(const std::vector<SurfacePoint>& points) const {
+    const std::vector<double> distances = distances_from(points);
+    return *std::max_element(distances.begin(), distances.end());
+  }
 
   /// The circle beside the curve, in the plane that touches the surface at the foot, brought to the surface.
   std::optional<Circle> circle_at(const CurvePlace& foot, double radius) const {
@@ -301,21 +315,25 @@ class BumpBuilder {
     const Vec3 ahead = aside.cross(normal);
     if (aside.dot(spot_.cells.front().position - foot.position) < 0) aside = -aside;
     Circle circle{foot, radius, {}, 0};
-    std::vector<Vec3> way = {foot.position};
+    circle.points = {foot.at};
+    Vec3 last = foot.position;
     const double step = 2 * std::numbers::pi * radius / points_of_turn;
     for (int i = 1; i < points_of_turn; ++i) {
       const double angle = 2 * std::numbers::pi * i / points_of_turn;
       const Vec3 place = foot.position + radius * (std::sin(angle) * ahead + (1 - std::cos(angle)) * aside);
       const NearestPoint there = linker_.locator().nearest(place, radius);
       if (!there.at.valid()) return std::nullopt;
-      way.push_back(position_of(mesh_, there.at));
       // over an edge or the rim the circle would be pressed flat
-      const double stepped = (way.back() - way[way.size() - 2]).norm();
+      const Vec3 position = position_of(mesh_, there.at);
+      const double stepped = (position - last).norm();
+      last = position;
       if (stepped < 0.7 * step || stepped > 1.4 * step) return std::nullopt;
       circle.points.push_back(there.at);
     }
-    way.push_back(foot.position);
-    circle.left = out_of_reach(way, foot.at.face);
+    circle.points.push_back(foot.at);
+    const std::vector<double> distances = distances_from(circle.points);
+    circle.left = static_cast<std::size_t>(
+        std::count_if(distances.begin(), distances.end(), [&](double distance) { return distance > limit_; }));
     return circle;
   }
 
@@ -344,7 +362,7 @@ class BumpBuilder {
 
   /// The lowest swell that reaches all of the spot: the curve around a foot is shifted towards the top of the spot by
   /// h cos², which turns by no more than h π² / 2 b² where the curve is straight.
-  std::optional<Bump> swell_from(const CurvePlace& foot) const {
+  std::optional<Bump> swell_from(const CurvePlace& foot, double most_cost) const {
     const Vec3 aim = spot_.cells.front().position - foot.position;
     const Vec3& normal = mesh_.face_normal(foot.at.face);
     const Vec3 aside = (aim - normal.dot(aim) * normal).stableNormalized();
@@ -354,7 +372,8 @@ class BumpBuilder {
       for (; half_width <= broadest_swell * spacing_; half_width *= broadening) {
         auto swell = swell_of(foot, aside, h, half_width);
         if (!swell) continue;
-        if (out_of_reach(swell->reached, foot.at.face) == 0) return swell;
+        if (swell->cost >= most_cost) return std::nullopt;
+        if (farthest_from(swell->reached) <= limit_) return swell;
         break;
       }
     }
@@ -370,22 +389,26 @@ class BumpBuilder {
     Bump swell;
     swell.start = places.front();
     swell.end = places.back();
+    std::vector<Vec3> way;
     for (int k = 0; k <= steps; ++k) {
       const double away = std::min(1.0, std::abs(2.0 * k / steps - 1) * span / half_width);
       const double c = std::cos(0.5 * std::numbers::pi * away);
-      swell.reached.push_back(places[k].position + height * c * c * aside);
+      way.push_back(places[k].position + height * c * c * aside);
     }
-    if (least_radius(swell.reached, mesh_.face_normal(foot.at.face)) < radius_) return std::nullopt;
+    if (least_radius(way, mesh_.face_normal(foot.at.face)) < radius_) return std::nullopt;
     for (int k = 1; k < steps; ++k) {
-      const NearestPoint there = linker_.locator().nearest(swell.reached[k], height + 0.1 * spacing_);
+      const NearestPoint there = linker_.locator().nearest(way[k], height + 0.1 * spacing_);
       if (!there.at.valid()) return std::nullopt;
       const Vec3 position = position_of(mesh_, there.at);
-      if ((position - swell.reached[k]).norm() > 0.3 * height) return std::nullopt;  // beyond the rim, over an edge
+      if ((position - way[k]).norm() > 0.3 * height) return std::nullopt;  // beyond the rim, over an edge
       swell.control.push_back(there.at);
-      swell.reached[k] = position;
+      way[k] = position;
     }
+    swell.reached = {swell.start.at};
+    swell.reached.insert(swell.reached.end(), swell.control.begin(), swell.control.end());
+    swell.reached.push_back(swell.end.at);
     for (int k = 1; k <= steps; ++k) {
-      swell.cost += (swell.reached[k] - swell.reached[k - 1]).norm();
+      swell.cost += (way[k] - way[k - 1]).norm();
       swell.cost -= (places[k].position - places[k - 1].position).norm();
     }
     return swell;
@@ -411,6 +434,7 @@ class BumpBuilder {
     Replacement replacement;
     replacement.first = bump.start.after;
     replacement.last = bump.end.after;
+    replacement.added = bump.cost;
     const Index piece = curve_.points[bump.start.after].piece;
     const auto add = [&](const SurfacePoint& at, const Vec3& position) {
       replacement.points.push_back({MoveKind::cover, at, position, normals_.at(at), piece});
@@ -432,9 +456,12 @@ class BumpBuilder {
   const ImpactCurve& curve_;
   const CoverField& cover_;
   const OpenSpot& spot_;
-  double radius_ = 0;
-  double limit_ = 0;
-  double spacing_ = 0;
+  double radius_;
+  bool slim_;
+  double scale_;    ///< lengths in space over those of the field
+  double limit_;    ///< the reach, in space
+  double spacing_;  ///< in space
+  SpotPatch patch_;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct Replacement {
   Index first = 0;                  ///< the last point of the curve before the stretch
   Index last = 0;                   ///< the first one behind it
   std::vector<ImpactPoint> points;  ///< what lies between them from now on
+  double added = 0;                 ///< about how much longer the curve becomes, mm
 };
 
 /// What bumps and turns have to keep, in the lengths of the cover's field unless said otherwise.
@@ -22,6 +23,8 @@ struct BumpLimits {
   double reach = 0;    ///< nothing in the spot is farther than this from the bump
   double spacing = 0;  ///< of the passes
   double radius = 0;  ///< the curve's corners are rounded with this radius afterwards, mm; tips go as far as that takes
+  bool slim = false;  ///< bumps take as little away from the other side of the curve as they can
+  const Progress& progress = Progress::none();
 };
 
 /// A short stretch of the curve drawn out towards an open spot, so far that all of the spot is in reach: the shortest

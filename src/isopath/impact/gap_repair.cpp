@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "isopath/contour/contour_graph.h"
@@ -26,8 +26,15 @@ constexpr double first_loop = 0.575;
 constexpr double bump_margin = 0.005;
 /// No place is overlooked that is farther from the curve than half the widest gap and this, in spacings.
 constexpr double resolution = 0.01;
+/// Spots longer than this, in spacings, are cut in two where one bump does not reach them or adds more than that.
+constexpr double shortest_cut = 0.3;
+constexpr double short_bump = 0.15;
+/// Where they go farther than this from the curve, in spacings, a loop is shorter than bumps side by side.
+constexpr double highest_row = 0.9;
 /// Along an open level the curve turns back by a half circle, which rounding leaves as it is.
 constexpr double way_back_over_radius = 2.2;
+/// What bumps take away beside them the next ones make good; slim ones end the to and fro.
+constexpr int rounds_of_broad_bumps = 2;
 /// A swell gives what it takes from the other side of the curve; where that is missed, turns end the to and fro.
 constexpr int rounds_of_swells = 3;
 
@@ -176,12 +183,43 @@ class GapCloser {
 
   /// In the form that the limits and the round ask for.
   std::optional<Replacement> bump_to(const OpenSpot& spot, const CoverField& cover, int round) const {
-    const BumpLimits limits{limit() - bump_margin * limits_.spacing, limits_.spacing, limits_.radius};
+    const BumpLimits limits{limit() - bump_margin * limits_.spacing, limits_.spacing, limits_.radius,
+                            round >= rounds_of_broad_bumps, progress_};
     if (!limits_.round) return bump_into(linker_, normals_, curve_, cover, spot, limits);
     if (round < rounds_of_swells) {
       if (auto swell = swell_into(linker_, normals_, curve_, cover, spot, limits)) return swell;
     }
     return turn_into(linker_, normals_, curve_, cover, spot, limits);
+  }
+
+  struct Bumps {
+    std::vector<Replacement> changes;
+    double added = 0;  ///< infinity where there is no bump
+  };
+
+  /// A bump to a spot, or bumps to parts of a long one where these are shorter together or the only ones.
+  Bumps bumps_to(const OpenSpot& spot, const CoverField& cover, int round) const {
+    progress_.checkpoint();
+    const double w = limits_.spacing;
+    Bumps whole{{}, infinity};
+    if (auto bump = bump_to(spot, cover, round)) whole = {{*bump}, bump->added};
+    if (limits_.round || whole.added <= short_bump * w || spot.cells.front().distance > highest_row * w) return whole;
+    Bumps parts;
+    for (const OpenSpot& half : halves_of(spot, shortest_cut * w)) {
+      Bumps bumps = bumps_to(half, cover, round);
+      parts.added += bumps.added;
+      std::move(bumps.changes.begin(), bumps.changes.end(), std::back_inserter(parts.changes));
+    }
+    return parts.changes.empty() || whole.added <= parts.added ? whole : parts;
+  }
+
+  /// Whether bumps are shorter than a loop, which goes along the spot twice, would be, or no loop can be made.
+  bool better_than_loop(const Bumps& bumps, const OpenSpot& spot, int round) const {
+    if (limits_.round || spot.cells.front().distance <= first_loop * limits_.spacing) return true;
+    if (bumps.changes.size() == 1 || (!bumps.changes.empty() && round >= rounds_of_broad_bumps)) return true;
+    Box3 box;
+    for (const SpotCell& cell : spot.cells) box.extend(cell.position);
+    return bumps.added < 2 * box.sizes().maxCoeff();
   }
 
   std::vector<Replacement> bumps_and_loops(const View& view, int round) {
@@ -190,16 +228,14 @@ class GapCloser {
     std::vector<Replacement> replacements;
     std::vector<char> wide(mesh_.n_faces(), 0);
     double farthest = 0;
-    std::vector<std::optional<Replacement>> bumps(view.spots.size());
-    all_side_by_side(bumps.size(), [&](std::size_t k) {
-      progress_.checkpoint();
-      bumps[k] = bump_to(view.spots[k], cover, round);
-    });
+    std::vector<Bumps> bumps(view.spots.size());
+    all_side_by_side(bumps.size(), [&](std::size_t k) { bumps[k] = bumps_to(view.spots[k], cover, round); });
     for (std::size_t k = 0; k < bumps.size(); ++k) {
       const OpenSpot& spot = view.spots[k];
-      auto& bump = bumps[k];
-      if (bump) replacements.push_back(*std::move(bump));
-      if (bump || limits_.round) continue;
+      if (better_than_loop(bumps[k], spot, round)) {
+        std::move(bumps[k].changes.begin(), bumps[k].changes.end(), std::back_inserter(replacements));
+        continue;
+      }
       farthest = std::max(farthest, spot.cells.front().distance);
       for (const SpotCell& cell : spot.cells) wide[cell.at.face] = 1;
     }
@@ -262,14 +298,23 @@ Replacement detour_along(const Contour& contour, const SurfaceLinker& linker, co
 
 int replace(const TriangleMesh& mesh, ImpactCurve& curve, std::vector<Replacement> replacements) {
   const double tolerance = mesh.tolerance().length;
-  std::stable_sort(replacements.begin(), replacements.end(), [](const Replacement& a, const Replacement& b) {
-    return std::tie(a.first, a.last) < std::tie(b.first, b.last);
+  // several may lie on one long move
+  const auto along_move = [&](Index first, const ImpactPoint& point) {
+    return (point.position - curve.points[first].position).norm();
+  };
+  std::stable_sort(replacements.begin(), replacements.end(), [&](const Replacement& a, const Replacement& b) {
+    if (a.first != b.first) return a.first < b.first;
+    return std::pair(along_move(a.first, a.points.front()), a.last) <
+           std::pair(along_move(b.first, b.points.front()), b.last);
   });
   std::vector<ImpactPoint> points;
   int count = 0;
   Index next = 0;  // the first point not dealt with
   for (const Replacement& r : replacements) {
-    if (r.first + 1 < next) continue;
+    const bool same_move = count > 0 && r.first + 1 == next;
+    if (r.first + 1 < next ||
+        (same_move && along_move(r.first, points.back()) > along_move(r.first, r.points.front()) + tolerance))
+      continue;
     points.insert(points.end(), curve.points.begin() + next, curve.points.begin() + r.first + 1);
     points.insert(points.end(), r.points.begin(), r.points.end());
     next = std::max(r.first + 1, r.last);

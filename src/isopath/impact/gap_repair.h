@@ -27,7 +27,7 @@ struct GapLimits {
   /// The curve is round already and is to stay so: swells and full turns with at least the radius take the place of
   /// bumps and loops, and what they do not reach stays open.
   bool round = false;
-  int most_rounds = 5;  ///< what a bump leaves open beside it is closed in the next round
+  int most_rounds = 12;  ///< what a bump leaves open beside it is closed in the next round
 };
 
 /// Closes what passes leave open where fronts meet: at saddles of the field, in sharp corners, inside the last pass

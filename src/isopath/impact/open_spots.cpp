@@ -15,6 +15,8 @@
 namespace isopath {
 namespace {
 
+/// Cells may be larger where they are all open, by so much of what they are beyond the limit, but no larger than this.
+constexpr double largest_cell_over_excess = 0.5;
 constexpr double largest_cell_over_resolution = 10;
 /// In parts larger than this, beside the limit, more than two passes are to be reckoned with.
 constexpr double largest_bounded = 0.5;
@@ -57,8 +59,7 @@ class SpotSearch {
       if (distance + radius <= limit_) continue;
       if (distance <= limit_ && may_be_bounded(part, radius) && bound_in_part(field_.data(), part, way) <= limit_)
         continue;
-      const bool all_open = distance - radius > limit_;
-      if (radius > (all_open ? largest_cell_over_resolution : 1.0) * resolution_) {
+      if (radius > largest_cell(distance - radius - limit_)) {
         halve(corners, part, parts);
       } else if (distance > limit_) {
         cells.push_back({centre, position, distance, radius});
@@ -67,6 +68,9 @@ class SpotSearch {
   }
 
  private:
+  double largest_cell(double least_excess) const {
+    return std::clamp(largest_cell_over_excess * least_excess, resolution_, largest_cell_over_resolution * resolution_);
+  }
   /// Whether a bound is worth its cost, about that of looking at two parts; each second time is enough.
   bool may_be_bounded(const FacePart& part, double radius) const {
     return part.depth % 2 == 0 && radius <= largest_bounded * limit_ && radius >= smallest_bounded * resolution_;
@@ -80,6 +84,12 @@ class SpotSearch {
 };
 
 using GridCell = std::array<Index, 3>;
+
+void put_top_first(OpenSpot& spot) {
+  const auto top = std::max_element(spot.cells.begin(), spot.cells.end(),
+                                    [](const SpotCell& a, const SpotCell& b) { return a.distance < b.distance; });
+  std::iter_swap(spot.cells.begin(), top);
+}
 
 /// Cells whose parts may touch belong to one spot.
 std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cells) {
@@ -121,11 +131,7 @@ std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cell
     }
     spots[k].cells.push_back(std::move(cells[i]));
   }
-  for (OpenSpot& spot : spots) {
-    const auto top = std::max_element(spot.cells.begin(), spot.cells.end(),
-                                      [](const SpotCell& a, const SpotCell& b) { return a.distance < b.distance; });
-    std::iter_swap(spot.cells.begin(), top);
-  }
+  for (OpenSpot& spot : spots) put_top_first(spot);
   return spots;
 }
 
@@ -147,6 +153,18 @@ std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double r
   std::vector<SpotCell> cells;
   for (const auto& part : found) cells.insert(cells.end(), part.begin(), part.end());
   return group(field.mesh(), std::move(cells));
+}
+
+std::vector<OpenSpot> halves_of(const OpenSpot& spot, double smallest) {
+  Box3 box;
+  for (const SpotCell& cell : spot.cells) box.extend(cell.position);
+  int axis = 0;
+  if (!(box.sizes().maxCoeff(&axis) > smallest)) return {};
+  const double middle = box.center()[axis];
+  std::vector<OpenSpot> halves(2);
+  for (const SpotCell& cell : spot.cells) halves[cell.position[axis] < middle ? 0 : 1].cells.push_back(cell);
+  for (OpenSpot& half : halves) put_top_first(half);
+  return halves;
 }
 
 }  // namespace isopath

@@ -29,9 +29,12 @@ struct OpenSpotsNear {
 
 /// The parts of the surface that are more than `limit` away from the source. Branch and bound over the faces: as
 /// distances have slope 1, no place is missed that is more than `resolution` farther than the limit. Cells are as
-/// small as that at the rim of a spot, and up to ten times as large inside it. In an order that depends on nothing but
+/// small as that at the rim of a spot, and up to ten times as large deep inside it. In an order that depends on nothing but
 /// the field; unreached faces are left out. Throws Error(cancelled) on request.
 std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution,
                                  const Progress& progress = Progress::none(), const OpenSpotsNear& near = {});
+
+/// A spot cut in two across its longest extent. Nothing for one no longer than `smallest`, in space.
+std::vector<OpenSpot> halves_of(const OpenSpot& spot, double smallest);
 
 }  // namespace isopath

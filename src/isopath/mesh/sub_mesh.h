@@ -26,8 +26,12 @@ struct SubMesh {
 /// each edge.
 std::vector<Index> parts_between_cuts(const TriangleMesh& mesh, std::span<const char> is_cut);
 
-/// One mesh for each label from 0 on; `part_of_face` holds a label for every face. Faces of one part stay joined at all
-/// edges they share. Where they only share a vertex that does not join them, it becomes several.
+/// Some faces, in ascending order, as a mesh. Faces stay joined at all edges they share. Where they only share a vertex
+/// that does not join them, it becomes several. Takes no longer than those faces ask for, however large the mesh is.
+SubMesh sub_mesh(const TriangleMesh& mesh, std::span<const Index> faces);
+
+/// One mesh for each label from 0 on; `part_of_face` holds a label for every face: the same as
+/// `sub_mesh` of each label's faces.
 std::vector<SubMesh> split_mesh(const TriangleMesh& mesh, std::span<const Index> part_of_face);
 
 }  // namespace isopath

@@ -66,19 +66,6 @@ OnTriangle nearest_on_triangle(const std::array<Vec3, 3>& p, const Vec3& q) {
   return best;
 }
 
-Vec3 snapped(Vec3 b) {
-  constexpr double tiny = 1e-12;
-  int largest = 0;
-  b.maxCoeff(&largest);
-  double rest = 1;
-  for (int i = 0; i < 3; ++i) {
-    if (b[i] < tiny) b[i] = 0;
-    if (i != largest) rest -= b[i];
-  }
-  b[largest] = rest;
-  return b;
-}
-
 /// A segment prepared for the shear of Woop, Benthin & Wald 2013.
 struct Segment {
   Vec3 origin;

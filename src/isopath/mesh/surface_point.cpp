@@ -54,4 +54,17 @@ Vec3 position_of(const TriangleMesh& mesh, const SurfacePoint& point) {
          point.barycentric[2] * mesh.position(c);
 }
 
+Vec3 snapped(Vec3 barycentric) {
+  constexpr double tiny = 1e-12;
+  int largest = 0;
+  barycentric.maxCoeff(&largest);
+  double rest = 1;
+  for (int i = 0; i < 3; ++i) {
+    if (barycentric[i] < tiny) barycentric[i] = 0;
+    if (i != largest) rest -= barycentric[i];
+  }
+  barycentric[largest] = rest;
+  return barycentric;
+}
+
 }  // namespace isopath

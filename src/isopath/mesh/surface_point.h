@@ -31,6 +31,9 @@ SurfacePoint point_on_halfedge(Index halfedge, double t);
 /// Throws Error(internal) when it does not.
 SurfacePoint express_in(const TriangleMesh& mesh, const SurfacePoint& point, Index face);
 
+/// Barycentric coordinates that add up to 1, with what rounding left below 1e-12 set to exactly zero.
+Vec3 snapped(Vec3 barycentric);
+
 /// Position in space.
 Vec3 position_of(const TriangleMesh& mesh, const SurfacePoint& point);
 
