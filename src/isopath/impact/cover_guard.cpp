@@ -1,5 +1,7 @@
 #include "isopath/impact/cover_guard.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,29 +14,36 @@
 namespace isopath {
 namespace {
 
-/// Centres of small parts of the faces within `radius` of some places.
+/// Centres of small parts of a face within `radius` of some places.
+void sample_beside(const TriangleMesh& mesh, Index face, const NearPlaces& near, double radius, double size,
+                   std::vector<Vec3>& samples) {
+  const FaceCorners corners = corners_of(mesh, face);
+  std::vector<FacePart> parts = {FacePart::whole(face)};
+  while (!parts.empty()) {
+    const FacePart part = parts.back();
+    parts.pop_back();
+    const Vec3 centre = position_of(mesh, {face, part.centre()});
+    const double extent = radius_of(corners, part);
+    if (!near.any_near(centre, radius + extent)) continue;
+    if (extent > size) {
+      halve(corners, part, parts);
+    } else {
+      samples.push_back(centre);
+    }
+  }
+}
+
+/// Those of all faces, face by face.
 std::vector<Vec3> samples_beside(const TriangleMesh& mesh, std::span<const Vec3> places, double radius, double size,
                                  const Progress& progress) {
   const NearPlaces near(places);
-  std::vector<Vec3> samples;
-  std::vector<FacePart> parts;
-  for (Index f = 0; f < mesh.n_faces(); ++f) {
+  std::vector<std::vector<Vec3>> of_face(static_cast<std::size_t>(mesh.n_faces()));
+  tbb::parallel_for(Index{0}, mesh.n_faces(), [&](Index f) {
     if (f % 1024 == 0) progress.checkpoint();
-    const FaceCorners corners = corners_of(mesh, f);
-    parts.push_back(FacePart::whole(f));
-    while (!parts.empty()) {
-      const FacePart part = parts.back();
-      parts.pop_back();
-      const Vec3 centre = position_of(mesh, {f, part.centre()});
-      const double extent = radius_of(corners, part);
-      if (!near.any_near(centre, radius + extent)) continue;
-      if (extent > size) {
-        halve(corners, part, parts);
-      } else {
-        samples.push_back(centre);
-      }
-    }
-  }
+    sample_beside(mesh, f, near, radius, size, of_face[f]);
+  });
+  std::vector<Vec3> samples;
+  for (const std::vector<Vec3>& some : of_face) samples.insert(samples.end(), some.begin(), some.end());
   return samples;
 }
 
@@ -118,45 +127,59 @@ CoverGuard::CoverGuard(const TriangleMesh& mesh, std::vector<Vec3> points, Index
     places.emplace_back(grid_cell(place, block_size), place);
   // samples come face by face, and keep that order in their cells
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Vec3> block;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    block.push_back(places[i].second);
-    if (i + 1 < places.size() && places[i + 1].first == places[i].first) continue;
-    progress.checkpoint();
-    const GridCell& cell = places[i].first;
-    const Vec3 centre = block_size * (Vec3(cell[0], cell[1], cell[2]) + Vec3::Constant(0.5));
-    std::vector<Index> beside = grid.near(centre);
-    std::erase_if(beside, [&](Index s) { return distance_to(s, centre) > far + block_radius; });
-    add_block(block, std::move(beside));
-    block.clear();
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 1; i <= places.size(); ++i) {
+    if (i == places.size() || places[i].first != places[i - 1].first) ends.push_back(i);
   }
+  std::vector<WatchedBlock> watched(ends.size());
+  tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t k) {
+    if (k % 64 == 0) progress.checkpoint();
+    const std::size_t first = k > 0 ? ends[k - 1] : 0;
+    const GridCell& cell = places[first].first;
+    const Vec3 centre = block_size * (Vec3(cell[0], cell[1], cell[2]) + Vec3::Constant(0.5));
+    std::vector<Index>& beside = watched[k].segments = grid.near(centre);
+    double least = infinity;
+    std::erase_if(beside, [&](Index s) {
+      const double d = distance_to(s, centre);
+      least = std::min(least, d);
+      return d > far + block_radius;
+    });
+    // a block that one segment holds wherever it moves needs no watch
+    if (least + block_radius < options_.reach - options_.most_moved) return;
+    for (std::size_t i = first; i < ends[k]; ++i) watch(places[i].second, watched[k]);
+  });
+  for (WatchedBlock& block : watched) add_block(std::move(block));
 }
 
-void CoverGuard::add_block(const std::vector<Vec3>& places, std::vector<Index> segments) {
-  const auto number = static_cast<Index>(blocks_.size());
+void CoverGuard::watch(const Vec3& place, WatchedBlock& block) const {
   const double far = options_.reach + options_.most_moved;
   const double safe = options_.reach - options_.most_moved;
-  Block block{static_cast<Index>(samples_.size()), 0, std::move(segments)};
-  for (const Vec3& place : places) {
-    double least = infinity;
-    Index witness = no_index;
-    for (const Index s : block.segments) {
-      const double d = distance_to(s, place);
-      if (d >= least) continue;
-      least = d;
-      witness = s;
-      if (least < safe) break;
-    }
-    // what is so near stays in reach wherever points move; what is so far was not covered by them
-    if (least >= safe && least <= far) samples_.push_back({place, std::max(options_.reach, least), witness, number});
+  Index& witness = block.last_witness;  // of the place before: often of this one too
+  double least = witness == no_index ? infinity : distance_to(witness, place);
+  for (const Index s : block.segments) {
+    if (least < safe) return;  // it stays in reach wherever points move
+    const double d = distance_to(s, place);
+    if (d >= least) continue;
+    least = d;
+    witness = s;
   }
-  block.past = static_cast<Index>(samples_.size());
+  // what is so far was not covered by points that move
+  if (least >= safe && least <= far) block.samples.push_back({place, std::max(options_.reach, least), witness});
+}
+
+void CoverGuard::add_block(WatchedBlock block) {
+  if (block.samples.empty()) return;
+  const auto number = static_cast<Index>(blocks_.size());
   const auto movable = static_cast<Index>(segments_of_point_.size());
   for (const Index s : block.segments) {
-    if (block.past > block.first && (segments_[s].first < movable || segments_[s].second < movable))
-      blocks_near_[s].push_back(number);
+    if (segments_[s].first < movable || segments_[s].second < movable) blocks_near_[s].push_back(number);
   }
-  blocks_.push_back(std::move(block));
+  const auto first = static_cast<Index>(samples_.size());
+  for (Sample& sample : block.samples) {
+    sample.block = number;
+    samples_.push_back(sample);
+  }
+  blocks_.push_back({first, static_cast<Index>(samples_.size()), std::move(block.segments)});
 }
 
 double CoverGuard::distance_to(Index segment, const Vec3& from) const {

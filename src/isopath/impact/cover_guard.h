@@ -44,7 +44,16 @@ class CoverGuard {
     std::vector<Index> segments;
   };
 
-  void add_block(const std::vector<Vec3>& places, std::vector<Index> segments);
+  /// One that is being made.
+  struct WatchedBlock {
+    std::vector<Index> segments;
+    std::vector<Sample> samples;
+    Index last_witness = no_index;
+  };
+
+  /// Adds a sample to the block, unless it is too near or too far for points that move to matter.
+  void watch(const Vec3& place, WatchedBlock& block) const;
+  void add_block(WatchedBlock block);
   double distance_to(Index segment, const Vec3& from) const;
   /// A segment other than two that has the sample in reach.
   Index other_witness(Index sample, Index a, Index b) const;
