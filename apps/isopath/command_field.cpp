@@ -160,11 +160,15 @@ void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
   const Way& way = found.way;
   progress.checkpoint();
   if (!arguments.output.empty()) write_field(arguments.output, part, distances, way);
-  if (!flags.json) return print(way_text(way));
+  if (!flags.json && !way.points.empty()) return print(way_text(way));  // the points alone, for other programs
 
   double largest = 0;
   for (const double d : distances) largest = d < infinity ? std::max(largest, d) : largest;
   const auto unreached = std::count(distances.begin(), distances.end(), infinity);
+  if (!flags.json) {
+    return print(fmt::format("distances at {} vertices, up to {:.6g} mm; {} not reached\nwritten to {}\n",
+                             distances.size(), largest, unreached, arguments.output));
+  }
   nlohmann::ordered_json report = {{"vertices", part.vertex_of_file_vertex.size()},
                                    {"triangles", part.mesh.n_faces()},
                                    {"method", arguments.method},

@@ -109,8 +109,14 @@ void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& fl
   } else {
     write_vtp(arguments.output, graph_vtp(part.mesh, graph));
   }
-  if (!flags.json) return;
   Json report = summary_json(part.mesh, graph);
+  if (!flags.json) {
+    return print(
+        fmt::format("{} arcs, {} nodes, {} of them free ends\nlength {:.6g} mm, up to {:.6g} mm from the sources\n"
+                    "written to {}\n",
+                    graph.arcs.size(), graph.nodes.size(), report["leaves"].get<std::size_t>(),
+                    report["length"].get<double>(), report["max_clearance"].get<double>(), arguments.output));
+  }
   report["output"] = arguments.output;
   report["warnings"] = part.warnings;
   print_json(report);

@@ -160,6 +160,9 @@ void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
     result = run_plan(job, progress);
     write_outputs(result, arguments.output, progress);
   }
+  for (const std::string& name : earlier_programs(arguments.output, result.programs)) {
+    result.warnings.push_back(fmt::format("{} in {} is of an earlier run", name, arguments.output));
+  }
   print_warnings(flags, result.warnings);
   print(flags.json ? summary_json(result) : text_summary(result, arguments.output));
 }
@@ -195,7 +198,8 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command
       .add_option("--smooth", given.smooth,
                   "Round the corners of passes: distances are smoothed over this width, mm, of which a spacing or two\n"
-                  "is usual; gaps that open are closed in the way that makes the shortest path")
+                  "is usual; gaps that open are closed in the way of least cost, where\n"
+                  "a sharp corner counts as five spacings of path and a lift as 20")
       ->check(number_from_0())
       ->default_str("0: not at all");
   command.add_option("--clearance", given.clearance, "Height of lifts above the surface, mm")
@@ -249,13 +253,13 @@ void add_tool_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--axis", given.axis, "Keep the tool's axis fixed to X,Y,Z (3 axes) instead of along the normal")
       ->delimiter(',')
       ->expected(3);
-  command.add_option("--feed", given.feed, "Along covering moves, mm/min")
+  command.add_option("--feed", given.feed, "Speed of the tool's tip (spray: the nozzle) along covering moves, mm/min")
       ->check(number_above_0())
       ->default_str(text(defaults.cover_feed_mm_per_min));
-  command.add_option("--link-feed", given.link_feed, "Along links, mm/min")
+  command.add_option("--link-feed", given.link_feed, "The same along links, mm/min")
       ->check(number_above_0())
       ->default_str("that of --feed");
-  command.add_option("--rapid", given.rapid, "Along lifts, mm/min")
+  command.add_option("--rapid", given.rapid, "The same along lifts, mm/min")
       ->check(number_above_0())
       ->default_str(text(defaults.rapid_speed_mm_per_min));
 }

@@ -115,7 +115,7 @@ class Field(Program):
         out = self.path("out", "d.csv")
         result = run("field", self.plane, *arguments, "-o", out)
         self.assertEqual(result.returncode, OK, result.stderr)
-        self.assertEqual(result.stdout, "")
+        self.assertIn(f"written to {out}", result.stdout)
         return [float(line) for line in self.read(out).decode().splitlines()]
 
     def test_csv_of_a_plane_holds_the_distances_of_the_plane(self):

@@ -10,6 +10,7 @@
 
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
+#include "isopath/plan/plan_outputs.h"
 
 namespace isopath {
 namespace {
@@ -96,6 +97,14 @@ TEST_F(OutputFolder, LeavesNothingWhenItIsCancelledAtAnyPlace) {
     EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "old"), {}), static_cast<std::ptrdiff_t>(files_.size()));
     EXPECT_EQ(read_whole_file(root_ / "old" / files_[0].name), files_[0].content);
   }
+}
+
+TEST_F(OutputFolder, NamesProgramsOfEarlierRunsAndNothingElse) {
+  EXPECT_TRUE(earlier_programs(root_ / "none", {}).empty());
+  for (const char* name : {"program_gcode3.ngc", "program_gcode5.ngc", "program_mine.ngc", "notes.txt"}) {
+    write_file_atomically(root_ / name, "");
+  }
+  EXPECT_EQ(earlier_programs(root_, {{"program_gcode5.ngc", ""}}), (Names{"program_gcode3.ngc"}));
 }
 
 TEST_F(OutputFolder, IsCheckedBeforehandWithoutChangingAnything) {

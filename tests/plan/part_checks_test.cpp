@@ -13,10 +13,37 @@ namespace isopath {
 namespace {
 
 TEST(PartChecks, WarnOfSizesThatAnotherUnitWouldExplain) {
-  EXPECT_TRUE(warning_of_size(0.9));
-  EXPECT_TRUE(warning_of_size(20001));
-  EXPECT_FALSE(warning_of_size(1));
-  EXPECT_FALSE(warning_of_size(20000));
+  for (const bool has_unit : {false, true}) {
+    EXPECT_TRUE(warning_of_size(0.9, has_unit));
+    EXPECT_TRUE(warning_of_size(20001, has_unit));
+    EXPECT_FALSE(warning_of_size(5, has_unit));
+    EXPECT_FALSE(warning_of_size(20000, has_unit));
+    EXPECT_EQ(warning_of_size(1.09, has_unit).has_value(), !has_unit);
+  }
+}
+
+TEST(PartChecks, WarnOfToolsLargerThanThePart) {
+  const ToolOptions mill{.process = Process::mill, .stand_off = 200, .ball_diameter = 10};
+  EXPECT_TRUE(warning_of_tool(mill, 9));
+  EXPECT_FALSE(warning_of_tool(mill, 11));
+  const ToolOptions spray{.process = Process::spray, .stand_off = 200, .ball_diameter = 10};
+  EXPECT_TRUE(warning_of_tool(spray, 199));
+  EXPECT_FALSE(warning_of_tool(spray, 201));
+}
+
+TEST(PartChecks, NameTheWidestGapAndItsPlace) {
+  const TriangleMesh sphere = test::icosphere(0, 10);
+  GapReport gap;
+  gap.vertex_gap.assign(sphere.n_vertices(), 2.0);
+  gap.max = 2.19;
+  EXPECT_FALSE(warning_of_gap(sphere, gap, 2));
+  gap.max = 2.4;  // between vertices
+  EXPECT_EQ(warning_of_gap(sphere, gap, 2).value_or("").find("near"), std::string::npos);
+  EXPECT_NE(warning_of_gap(sphere, gap, 2).value_or("").find("1.200"), std::string::npos);
+  gap.vertex_gap[3] = 2.4;
+  EXPECT_NE(warning_of_gap(sphere, gap, 2).value_or("").find("near"), std::string::npos);
+  gap.max = infinity;
+  EXPECT_FALSE(warning_of_gap(sphere, gap, 2));
 }
 
 /// A path along x over a ridge: flat, then turned by `angle` about y from x = 0 on, points every `step`.

@@ -20,10 +20,12 @@ std::string_view suffix_of(std::string_view format) {
 OutputFile program(const ToolPath& path, const Job& job, const std::string& format) {
   GcodeOptions options;
   options.process = job.tool.process;
-  return {fmt::format("program_{}{}", format, suffix_of(format)), export_tool_path(path, format, options)};
+  return {program_name(format), export_tool_path(path, format, options)};
 }
 
 }  // namespace
+
+std::string program_name(std::string_view format) { return fmt::format("program_{}{}", format, suffix_of(format)); }
 
 std::vector<OutputFile> make_programs(const ToolPath& path, const Job& job, std::vector<std::string>& warnings) {
   std::vector<OutputFile> files;

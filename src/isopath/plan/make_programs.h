@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "isopath/plan/job.h"
@@ -8,6 +9,9 @@
 #include "isopath/tool/tool_path.h"
 
 namespace isopath {
+
+/// The file name that a program in this format gets: `program_FORMAT` with the format's suffix.
+std::string program_name(std::string_view format);
 
 /// The path as a program in each format the job names, `program_FORMAT` with the format's suffix. Where it names none:
 /// 5-axis G-code, or, with a warning, poses when the machine's table cannot reach all axes.

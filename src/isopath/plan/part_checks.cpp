@@ -13,18 +13,47 @@ namespace isopath {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double smallest_part = 1;     ///< mm
+constexpr double smallest_part = 5;  ///< mm
+constexpr double smallest_with_unit = 1;
 constexpr double largest_part = 20000;  ///< mm
+constexpr double most_gap = 1.1;        ///< spacings: beyond what meshes and roundings account for
 constexpr double jump = 30 * degree;
 constexpr double facing_away = degree;  ///< beyond a right angle
 constexpr double share_facing_away = 1e-3;
 
 }  // namespace
 
-std::optional<std::string> warning_of_size(double size) {
+std::optional<std::string> warning_of_size(double size, bool has_unit) {
+  if (size < smallest_part && size >= smallest_with_unit && has_unit) return std::nullopt;
   if (size >= smallest_part && size <= largest_part) return std::nullopt;
   return fmt::format("the part measures {:.4g} mm: if its file is in {}, give --unit (in a job: unit)", size,
                      size < smallest_part ? "metres or inches" : "another unit than mm");
+}
+
+std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size) {
+  const bool is_spray = tool.process == Process::spray;
+  const double length = is_spray ? tool.stand_off : tool.ball_diameter;
+  if (length <= size) return std::nullopt;
+  return fmt::format(
+      "the {} of {:.4g} mm is larger than the part, {:.4g} mm: check both, and the unit of the mesh file",
+      is_spray ? "stand-off" : "ball", length, size);
+}
+
+std::optional<std::string> warning_of_gap(const TriangleMesh& mesh, const GapReport& gap, double spacing) {
+  if (!(gap.max > most_gap * spacing) || !(gap.max < infinity)) return std::nullopt;
+  std::string place;  // samples within large triangles may see what no vertex does
+  const auto worst = std::max_element(gap.vertex_gap.begin(), gap.vertex_gap.end(), [](double a, double b) {
+    return (a < infinity ? a : 0) < (b < infinity ? b : 0);  // no pass reaches components without a source
+  });
+  if (worst != gap.vertex_gap.end() && *worst > most_gap * spacing) {
+    const Vec3 p = mesh.position(static_cast<Index>(worst - gap.vertex_gap.begin()));
+    place = fmt::format(", near ({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
+  }
+  return fmt::format(
+      "passes leave a gap of {:.3f} × spacing at most{}: a smaller spacing, a smaller radius of turns, less smoothing "
+      "or "
+      "another pattern narrows it",
+      gap.max / spacing, place);
 }
 
 void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool) {

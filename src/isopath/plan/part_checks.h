@@ -5,14 +5,23 @@
 #include <string>
 
 #include "isopath/core/progress.h"
+#include "isopath/impact/gap.h"
 #include "isopath/impact/impact_curve.h"
 #include "isopath/mesh/triangle_mesh.h"
 #include "isopath/tool/tool_model.h"
 
 namespace isopath {
 
-/// Says that the part is smaller than a millimetre or larger than 20 m: more likely its file is in another unit.
-std::optional<std::string> warning_of_size(double size);
+/// Says that the part is smaller than 5 mm (1 mm where its file is not in mm, as then somebody thought of the unit) or
+/// larger than 20 m: more likely its file is in another unit.
+std::optional<std::string> warning_of_size(double size, bool has_unit);
+
+/// Says that the ball, or the stand-off of a nozzle, is larger than the part.
+std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size);
+
+/// Says that the largest gap is above 1.1 spacings, and where if a vertex shows it. Not for gaps without end: those are
+/// of components without a source.
+std::optional<std::string> warning_of_gap(const TriangleMesh& mesh, const GapReport& gap, double spacing);
 
 /// Throws Error(no_plan) when more than a thousandth of the area that the sources reach (finite `distances`) faces away
 /// from a fixed tool axis by more than a degree. The tool path would refuse such a part, but only once it is planned.

@@ -1,12 +1,16 @@
 #include "isopath/plan/plan_outputs.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "isopath/core/side_by_side.h"
+#include "isopath/plan/make_programs.h"
 #include "isopath/plan/plan_report.h"
 #include "isopath/post/csv.h"
+#include "isopath/post/export.h"
 #include "isopath/post/path_vtp.h"
 
 namespace isopath {
@@ -149,6 +153,19 @@ std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesy
   files.insert(files.end(), result.programs.begin(), result.programs.end());
   if (result.job.report) files.push_back(std::move(report));
   return files;
+}
+
+std::vector<std::string> earlier_programs(const std::filesystem::path& folder,
+                                          const std::vector<OutputFile>& programs) {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats()) {
+    const std::string name = program_name(format.name);
+    const bool is_new =
+        std::any_of(programs.begin(), programs.end(), [&](const OutputFile& program) { return program.name == name; });
+    std::error_code ignored;  // what cannot be seen misleads nobody
+    if (!is_new && std::filesystem::exists(folder / name, ignored)) names.push_back(name);
+  }
+  return names;
 }
 
 void write_outputs(const PlanResult& result, const std::filesystem::path& folder, Progress& progress) {

@@ -24,6 +24,10 @@ std::string summary_json(const PlanResult& result);
 /// `folder`) and report.html.
 std::vector<OutputFile> plan_outputs(const PlanResult& result, const std::filesystem::path& folder);
 
+/// Names of programs in the folder that this run did not write and that the planner's own naming shows to be of an
+/// earlier run: nobody should take one of them for the program of this run. They stay, as all other files do.
+std::vector<std::string> earlier_programs(const std::filesystem::path& folder, const std::vector<OutputFile>& programs);
+
 /// Writes them, all or none. Throws Error(bad_input) naming the folder when it cannot be written.
 void write_outputs(const PlanResult& result, const std::filesystem::path& folder,
                    Progress& progress = Progress::none());

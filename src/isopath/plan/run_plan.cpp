@@ -76,7 +76,7 @@ double spacing_of(const Job& job, const TriangleMesh& mesh, std::vector<std::str
   if (job.scallop > 0) return scallop_pitch(job.scallop, 0.5 * job.tool.ball_diameter);
   const double spacing = mesh.size() / passes_over_size;
   warnings.push_back(
-      fmt::format("no spacing was given: {} mm was taken, 1/{:.0f} of the part's size", spacing, passes_over_size));
+      fmt::format("no spacing was given: {:.4g} mm was taken, 1/{:.0f} of the part's size", spacing, passes_over_size));
   return spacing;
 }
 
@@ -539,7 +539,10 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   clock.ends("read");
 
-  if (auto warning = warning_of_size(mesh.size())) result.warnings.push_back(*std::move(warning));
+  if (auto warning = warning_of_size(mesh.size(), job.unit != LengthUnit::millimetre)) {
+    result.warnings.push_back(*std::move(warning));
+  }
+  if (auto warning = warning_of_tool(job.tool, mesh.size())) result.warnings.push_back(*std::move(warning));
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
   if (job.min_radius > 0) check_min_radius(mesh, job.min_radius);
@@ -563,6 +566,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   result.length_ratio = length_ratio_of(result, metric);
   clock.ends("gap");
 
+  if (auto warning = warning_of_gap(mesh, result.gap, result.spacing)) result.warnings.push_back(*std::move(warning));
   warn_of_gouges(result);
   find_tight_places(result, progress);
 
