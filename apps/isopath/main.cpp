@@ -19,6 +19,10 @@ std::string failure_message(const CLI::App* app, const CLI::Error& error) {
   }
   std::string command = "isopath";
   for (const CLI::App* parsed : app->get_subcommands()) command += " " + parsed->get_name();
+  for (const std::string& argument : app->remaining(true)) {
+    if (!argument.starts_with('-')) continue;  // the value of an unknown option is left over, too
+    return fmt::format("isopath: error: there is no option '{}'\n  '{} --help' lists them\n", argument, command);
+  }
   return fmt::format("isopath: error: {}\n  '{} --help' tells what is allowed\n", error.what(), command);
 }
 

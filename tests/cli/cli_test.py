@@ -85,6 +85,8 @@ class Usage(Program):
         self.assertEqual(run("fly").returncode, USAGE)
         self.assertEqual(run("field").returncode, USAGE)
         self.assertEqual(run("field", self.plane, "-o", "d.csv", "--wings").returncode, USAGE)
+        misspelt = run("plan", self.plane, "--spacng", "0.5", "-o", self.path("out"))
+        self.assert_refused(misspelt, USAGE, "no option '--spacng'")
         self.assertEqual(run("field", self.plane, "--threads", "-1", "-o", "d.csv").returncode, USAGE)
         out = self.path("d.csv")
         self.assert_refused(run("field", self.plane, "--source", "border", "-o", out), USAGE, "'border'", "boundary:K")
