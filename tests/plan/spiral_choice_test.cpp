@@ -103,5 +103,18 @@ TEST_F(SpiralChoices, PartsThatWouldTakeLongAreNotBlendedUnasked) {
   expect_same_curve(chosen, plan(square, Pattern::spiral, Blending::none, spacing));
 }
 
+TEST_F(SpiralChoices, LargeRadiiSwallowNoPasses) {
+  Job job;
+  job.pattern = Pattern::spiral;
+  job.spacing = 5;
+  job.min_radius = 20;  // drawn as round as that, the spiral of a square of 50 mm shrinks to a turn
+  job.report = false;
+  job.mesh = std::filesystem::path(testing::TempDir()) / "LargeRadiiSwallowNoPasses.off";
+  test::write_off(test::planar_grid(4, 4, 50, 50), job.mesh);
+  const PlanResult result = run_plan(job);
+  EXPECT_GT(result.gap.covered_fraction, 0.99);
+  EXPECT_FALSE(result.tight.empty()) << "it has to tell where the radius is not kept";
+}
+
 }  // namespace
 }  // namespace isopath

@@ -383,7 +383,7 @@ class BumpBuilder {
   /// None where it would turn too tightly or there is no room.
   std::optional<Bump> swell_of(const CurvePlace& foot, const Vec3& aside, double height, double half_width) const {
     const double span = half_width + 0.5 * radius_;  // with what the turns at its ends are measured on
-    const int steps = std::clamp(static_cast<int>(std::ceil(2 * span / (0.25 * radius_))), 8, 64);
+    const int steps = static_cast<int>(std::clamp(std::ceil(2 * span / (0.25 * radius_)), 8.0, 64.0));
     const std::vector<CurvePlace> places = around(foot, span, steps);
     if (places.empty()) return std::nullopt;
     Bump swell;
@@ -418,7 +418,9 @@ class BumpBuilder {
   double least_radius(const std::vector<Vec3>& way, const Vec3& normal) const {
     double least = infinity;
     const double step = (way[1] - way[0]).norm();
-    const auto arm = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * radius_ / step)));
+    if (!(step > 0)) return 0;
+    const auto arm = std::max<std::size_t>(
+        1, static_cast<std::size_t>(std::min(std::round(0.5 * radius_ / step), static_cast<double>(way.size()))));
     for (std::size_t i = arm; i + arm < way.size(); ++i) {
       Vec3 a = way[i] - way[i - arm];
       Vec3 b = way[i + arm] - way[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "isopath/impact/min_radius.h"
@@ -19,6 +20,9 @@ constexpr int rounds_before_rounding = 2;
 /// What drawing tight leaves covered, in spacings: less than what counts as wide, as it looks at samples only.
 constexpr double taut_gap = 1.02;
 
+/// Rounding that leaves less of what a curve covers has taken more than corners.
+constexpr double least_left = 0.8;
+
 bool before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
@@ -30,11 +34,32 @@ std::vector<Vec3> sorted_positions(const ImpactCurve& curve) {
   return positions;
 }
 
+double cover_length(const ImpactCurve& curve) {
+  double length = 0;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    if (curve.points[i].kind == MoveKind::cover)
+      length += (curve.points[i].position - curve.points[i - 1].position).norm();
+  }
+  return length;
+}
+
+/// Rounds the curve, unless that would swallow passes, as radii of many spacings do, and not just their corners.
+std::vector<TightPlace> round_where_possible(const SurfaceLinker& linker, const SmoothNormals& normals,
+                                             ImpactCurve& curve, double radius, const Progress& progress) {
+  ImpactCurve rounded = curve;
+  std::vector<TightPlace> tight = keep_min_radius(linker, normals, rounded, radius, progress);
+  if (cover_length(rounded) < least_left * cover_length(curve)) {
+    return tight_places(linker.mesh(), curve, radius, progress);
+  }
+  curve = std::move(rounded);
+  return tight;
+}
+
 /// Rounds the curve and adds the points that this has moved, where they were and where they are.
 std::vector<TightPlace> round_corners(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactCurve& curve,
                                       double radius, std::vector<Vec3>& moved, const Progress& progress) {
   const std::vector<Vec3> old_positions = sorted_positions(curve);
-  std::vector<TightPlace> tight = keep_min_radius(linker, normals, curve, radius, progress);
+  std::vector<TightPlace> tight = round_where_possible(linker, normals, curve, radius, progress);
   const std::vector<Vec3> positions = sorted_positions(curve);
   std::set_symmetric_difference(old_positions.begin(), old_positions.end(), positions.begin(), positions.end(),
                                 std::back_inserter(moved), before);
@@ -58,7 +83,7 @@ void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, Imp
   int changes = closed.count;
   if (options.radius_first) {
     // what was asked for comes before the last gaps; turns that meet the curve near a bend may have corners
-    if (changes > 0) plan.tight = keep_min_radius(linker, normals, plan.curve, limits.radius, progress);
+    if (changes > 0) plan.tight = round_where_possible(linker, normals, plan.curve, limits.radius, progress);
     return;
   }
   if (options.taut) {

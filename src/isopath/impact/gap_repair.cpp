@@ -151,10 +151,10 @@ class GapCloser {
     const NearPlaces changed(places);
     QuietProgress quiet(progress_);
     // a metric's lengths are not those of places
-    const bool of_parts = limits_.metric == nullptr;
-    CoverField cover = of_parts
-                           ? distance_from_part_of_cover(mesh_, curve_, moves_near(changed, 2.5 * w), 2 * w, w, quiet)
-                           : distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);
+    const std::vector<char> near = moves_near(changed, 2.5 * w);
+    const bool of_parts = limits_.metric == nullptr && has_move(near);
+    CoverField cover = of_parts ? distance_from_part_of_cover(mesh_, curve_, near, 2 * w, w, quiet)
+                                : distance_from_cover(mesh_, curve_, w, quiet, limits_.metric);
     std::vector<OpenSpot> spots = open_spots(cover.field, limit(), resolution * w, progress_,
                                              of_parts ? OpenSpotsNear{&changed, 1.2 * w} : OpenSpotsNear{});
     return {std::move(cover), std::move(spots), of_parts};
@@ -177,6 +177,14 @@ class GapCloser {
       }
     }
     return marked;
+  }
+
+  /// Whether a covering move lies between marked points.
+  bool has_move(const std::vector<char>& marked) const {
+    for (std::size_t i = 1; i < marked.size(); ++i) {
+      if (marked[i - 1] & marked[i] && curve_.points[i].kind == MoveKind::cover) return true;
+    }
+    return false;
   }
 
   double limit() const { return 0.5 * limits_.widest * limits_.spacing; }

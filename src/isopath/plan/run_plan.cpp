@@ -114,9 +114,9 @@ void check_pass_count(const std::vector<double>& values, double spacing) {
                              1.001 * (high - low) / most_passes)});
 }
 
-/// Bound on the error of distances, as a part of the part's size: a tenth of what isolines are promised to keep, and
+/// Bound on the error of distances, as a part of the part's size: half of what isolines are promised to keep, and
 /// far below any machine's; it saves most of the windows that fans of nearly flat vertices would cost.
-constexpr double field_accuracy = 1e-7;
+constexpr double field_accuracy = 5e-7;
 
 struct Field {
   std::unique_ptr<SurfaceFunction> function;
@@ -363,6 +363,7 @@ void choose_spiral(PlanResult& result, Field& field, Progress& progress) {
   if (!blended) return plan_curve(result, field, nullptr, progress);
 
   choice.by_blend = cost_of(blended->impact.curve, spacing, true);
+  if (!may_cover(*choice.by_blend, area, spacing)) return plan_curve(result, field, nullptr, progress);
   const double cost = as_length(*choice.by_blend, spacing);
   // where no pattern was named, a two-way curve may be shorter than either
   const bool is_long = !result.job.pattern && choice.by_blend->length * spacing > good_length_ratio * area;

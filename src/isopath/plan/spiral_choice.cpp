@@ -11,6 +11,8 @@ namespace {
 constexpr double lift_over_spacing = 20;
 constexpr double corner_over_spacing = 5;
 constexpr double nothing_to_win = 1.03;
+/// Of area / spacing: strips along rims need no pass of their own.
+constexpr double least_to_cover = 0.8;
 /// Triangles that refine_for_blend makes of a square with a side of one spacing, in the middle of what parts take.
 constexpr double triangles_in_square = 40;
 
@@ -48,6 +50,10 @@ double triangles_for_blend(const TriangleMesh& mesh, double spacing) {
 
 bool is_good_spiral(const CurveCost& cost, double area, double spacing) {
   return cost.lifts == 0 && cost.sharp_corners == 0 && cost.length * spacing <= nothing_to_win * area;
+}
+
+bool may_cover(const CurveCost& cost, double area, double spacing) {
+  return cost.length * spacing >= least_to_cover * area;
 }
 
 std::string text_of(const SpiralChoice& choice, double area, double spacing) {

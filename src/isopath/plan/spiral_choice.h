@@ -44,6 +44,9 @@ inline constexpr double most_triangles_unasked = 100000;
 /// A spiral so good that blending has nothing to win.
 bool is_good_spiral(const CurveCost& cost, double area, double spacing);
 
+/// False for a curve that is too short to cover the area: a smallest radius of many spacings swallows passes.
+bool may_cover(const CurveCost& cost, double area, double spacing);
+
 /// What was chosen and why, as a sentence without full stop. `area` in mm².
 std::string text_of(const SpiralChoice& choice, double area, double spacing);
 
