@@ -27,8 +27,8 @@ TEST(PartChecks, WarnOfToolsLargerThanThePart) {
   EXPECT_TRUE(warning_of_tool(mill, 9));
   EXPECT_FALSE(warning_of_tool(mill, 11));
   const ToolOptions spray{.process = Process::spray, .stand_off = 200, .ball_diameter = 10};
-  EXPECT_TRUE(warning_of_tool(spray, 199));
-  EXPECT_FALSE(warning_of_tool(spray, 201));
+  EXPECT_TRUE(warning_of_tool(spray, 19));
+  EXPECT_FALSE(warning_of_tool(spray, 21));
 }
 
 TEST(PartChecks, NameTheWidestGapAndItsPlace) {

@@ -33,7 +33,8 @@ std::optional<std::string> warning_of_size(double size, bool has_unit) {
 std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size) {
   const bool is_spray = tool.process == Process::spray;
   const double length = is_spray ? tool.stand_off : tool.ball_diameter;
-  if (length <= size) return std::nullopt;
+  // a spray gun is often farther away than its part is large
+  if (length <= (is_spray ? 10 * size : size)) return std::nullopt;
   return fmt::format(
       "the {} of {:.4g} mm is larger than the part, {:.4g} mm: check both, and the unit of the mesh file",
       is_spray ? "stand-off" : "ball", length, size);
