@@ -11,7 +11,8 @@ namespace isopath {
 /// How the distance from the boundary is blended with what lies on its medial axis (paper ch. 11).
 enum class BlendForm {
   /// Raised along the axis no more than it takes to have one top: the least function above the distance that does not
-  /// fall on the way to the root, carried down along the spokes. Tops that are more than two spacings from the rest stay
+  /// fall on the way to the root, carried down along the spokes. Tops that are more than two spacings from the rest
+  /// stay
   /// tops: islands, whose levels are joined to the others.
   least,
   /// The paper's D_S / (D_S + D_MA), with the distance from the axis offset so that values along it fall evenly from

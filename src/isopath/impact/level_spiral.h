@@ -26,12 +26,13 @@ struct LevelSpiralOptions {
 /// window of it. Neighbouring turns have levels a spacing apart everywhere, so that the gap is that of the levels.
 /// At the rim and around the top, where levels end, the arms are squeezed in between, so that nothing is left open.
 ///
-/// A component may have more tops than one. The levels around the lower ones are islands: closed curves that are inserted
-/// into the curve one by one, by a joint as in two_way, so that no level has to go there and back.
+/// A component may have more tops than one. The levels around the lower ones are islands: closed curves that are
+/// inserted into the curve one by one, by a joint as in two_way, so that no level has to go there and back.
 ///
 /// Every component must be a disc with the function 0 on its boundary, a closed surface, or an annulus with the
 /// function lowest on one loop and highest on the other. Throws Error(no_plan) when a level is not made of
-/// closed curves or does not go round the part but for its islands, Error(bad_usage) for invalid options, Error(cancelled) on request.
+/// closed curves or does not go round the part but for its islands, Error(bad_usage) for invalid options,
+/// Error(cancelled) on request.
 ImpactPlan level_spiral(const VertexField& function, const LevelSpiralOptions& options,
                         Progress& progress = Progress::none());
 

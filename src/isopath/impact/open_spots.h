@@ -29,8 +29,8 @@ struct OpenSpotsNear {
 
 /// The parts of the surface that are more than `limit` away from the source. Branch and bound over the faces: as
 /// distances have slope 1, no place is missed that is more than `resolution` farther than the limit. Cells are as
-/// small as that at the rim of a spot, and up to ten times as large deep inside it. In an order that depends on nothing but
-/// the field; unreached faces are left out. Throws Error(cancelled) on request.
+/// small as that at the rim of a spot, and up to ten times as large deep inside it. In an order that depends on nothing
+/// but the field; unreached faces are left out. Throws Error(cancelled) on request.
 std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double resolution,
                                  const Progress& progress = Progress::none(), const OpenSpotsNear& near = {});
 

@@ -16,7 +16,7 @@ namespace isopath {
 /// larger than 20 m: more likely its file is in another unit.
 std::optional<std::string> warning_of_size(double size, bool has_unit);
 
-/// Says that the ball, or the stand-off of a nozzle, is larger than the part.
+/// Says that the ball is larger than the part, or the stand-off of a nozzle than ten of it.
 std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size);
 
 /// Says that the largest gap is above 1.1 spacings, and where if a vertex shows it. Not for gaps without end: those are
