@@ -186,7 +186,7 @@ void add_path_options(CLI::App& command, PlanArguments& given) {
   command.add_option("--direction", given.direction, "planar: the direction the planes follow each other in, X,Y,Z")
       ->delimiter(',')
       ->expected(3)
-      ->default_str("1,0,0");
+      ->default_str("along the part's middle axis, so that passes are long");
   command.add_option("--spacing", given.spacing, "Distance between neighbouring passes, mm")
       ->check(number_above_0())
       ->default_str("1/60 of the part's size");

@@ -194,7 +194,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("tool:\n  diameter: 3\n"), {"line 3", "tool.diameter", "unknown key", "ball_diameter"});
   expect_all(complaint("tool:\n  ball_diameter: 0\n"), {"line 3", "tool.ball_diameter", "0", "above 0"});
   expect_all(complaint("planar_direction: [1, 2]\n"), {"line 2", "planar_direction", "a list of 2", "three"});
-  expect_all(complaint("planar_direction: [0, 0, 0]\n"), {"planar_direction", "0, 0, 0"});
+  expect_all(complaint("planar_direction: [.nan, 0, 0]\n"), {"planar_direction", "nan"});
   expect_all(complaint("programs: [apt]\n"), {"line 2", "programs", "'apt'", "gcode3, gcode5"});
   expect_all(complaint("report: yes please\n"), {"line 2", "report", "'yes please'", "true or false"});
   expect_all(complaint("spacing: [1\n"), {"line", "not a YAML file"});

@@ -195,7 +195,7 @@ void Job::validate() const {
   if (scallop > 0 && pattern == Pattern::trochoidal) {
     refuse("scallop", fmt::format("{} with circles", scallop), "circles need a spacing: give one instead");
   }
-  if (!planar_direction.allFinite() || planar_direction.isZero(0)) {
+  if (!planar_direction.allFinite()) {
     refuse("planar_direction",
            fmt::format("{}, {}, {} is no direction", planar_direction.x(), planar_direction.y(), planar_direction.z()));
   }

@@ -41,7 +41,8 @@ struct Job {
   /// Blends the distances with the medial axis, so that the isolines of a part without holes are nested closed curves:
   /// for the patterns contour, spiral, double-spiral and two-way.
   Blending blend = Blending::automatic;
-  Vec3 planar_direction = Vec3::UnitX();  ///< planar: the direction the cutting planes follow each other in, not 0
+  /// planar: the direction the cutting planes follow each other in; 0 for the one that makes few long passes.
+  Vec3 planar_direction = Vec3::Zero();
   double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
   /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.

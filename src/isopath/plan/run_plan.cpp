@@ -27,6 +27,7 @@
 #include "isopath/plan/make_sources.h"
 #include "isopath/plan/nested_plan.h"
 #include "isopath/plan/part_checks.h"
+#include "isopath/plan/planar_direction.h"
 #include "isopath/plan/scallop_metric.h"
 #include "isopath/plan/smooth_part.h"
 #include "isopath/tool/make_tool_path.h"
@@ -170,11 +171,15 @@ Field exact_field(const PlanResult& result, const IntrinsicGeometry* metric, Aut
   return {std::move(exact), std::move(values)};
 }
 
+Vec3 direction_of_planes(const Job& job, const TriangleMesh& mesh) {
+  return job.planar_direction.isZero(0) ? planar_direction_of(mesh) : job.planar_direction;
+}
+
 Field field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
   progress.stage("distance field");
   const TriangleMesh& mesh = result.part.mesh;
   if (result.job.pattern == Pattern::planar) {
-    auto height = std::make_unique<VertexField>(height_field(mesh, result.job.planar_direction));
+    auto height = std::make_unique<VertexField>(height_field(mesh, direction_of_planes(result.job, mesh)));
     std::vector<double> values(height->values().begin(), height->values().end());
     return {std::move(height), std::move(values)};
   }
@@ -506,7 +511,7 @@ void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) 
   RefinedMesh shown;
   if (job.report) shown = parted(refine_for_display(parts.mesh, result.spacing), parts.patch_of_face);
   const PatchPlanOptions options{.pattern = job.pattern,
-                                 .planar_direction = job.planar_direction,
+                                 .planar_direction = direction_of_planes(job, parts.mesh),
                                  .spacing = result.spacing,
                                  .clearance = job.clearance,
                                  .circle_radius = job.circle_radius,
