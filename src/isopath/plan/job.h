@@ -43,7 +43,7 @@ struct Job {
   Blending blend = Blending::automatic;
   /// planar: the direction the cutting planes follow each other in; 0 for the one that makes few long passes.
   Vec3 planar_direction = Vec3::Zero();
-  double spacing = 0;                     ///< between neighbouring passes; 0 takes 1/60 of the part's size
+  double spacing = 0;  ///< between neighbouring passes; 0 takes 1/60 of the part's size
   /// Height of the cusps that the ball is to leave everywhere, mm, below its radius; 0 keeps the spacing the same
   /// instead. For planar passes the pitch is that of a flat surface, and cusps are only measured.
   double scallop = 0;
