@@ -3,39 +3,26 @@
 #include <gtest/gtest.h>
 
 #include "isopath/plan/run_plan.h"
+#include "support/plan_spiral.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
 namespace {
 
-class SpiralChoices : public testing::Test {
- protected:
-  static PlanResult plan(const TriangleMesh& mesh, std::optional<Pattern> pattern, Blending blend, double spacing) {
-    Job job;
-    job.pattern = pattern;
-    job.blend = blend;
-    job.spacing = spacing;
-    const auto folder = std::filesystem::path(testing::TempDir());
-    job.mesh = folder / (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".off");
-    test::write_off(mesh, job.mesh);
-    job.report = false;
-    return run_plan(job);
-  }
-  static void expect_same_curve(const PlanResult& a, const PlanResult& b) {
-    ASSERT_EQ(a.impact.curve.points.size(), b.impact.curve.points.size());
-    for (std::size_t i = 0; i < a.impact.curve.points.size(); ++i)
-      ASSERT_EQ(a.impact.curve.points[i].position, b.impact.curve.points[i].position) << "point " << i;
-  }
-};
+void expect_same_curve(const PlanResult& a, const PlanResult& b) {
+  ASSERT_EQ(a.impact.curve.points.size(), b.impact.curve.points.size());
+  for (std::size_t i = 0; i < a.impact.curve.points.size(); ++i)
+    ASSERT_EQ(a.impact.curve.points[i].position, b.impact.curve.points[i].position) << "point " << i;
+}
 
-TEST_F(SpiralChoices, CornersAndLiftsCountAsLength) {
+TEST(SpiralChoices, CornersAndLiftsCountAsLength) {
   const CurveCost smooth{.length = 100};
   EXPECT_EQ(as_length(smooth, 2), 100);
   EXPECT_EQ(as_length({.length = 100, .lifts = 1}, 2), 140);
   EXPECT_EQ(as_length({.length = 100, .sharp_corners = 1}, 2), 110);
 }
 
-TEST_F(SpiralChoices, OnlyDiscsWithTheirWholeRimAsSource) {
+TEST(SpiralChoices, OnlyDiscsWithTheirWholeRimAsSource) {
   const TriangleMesh disc = test::l_shape(3);
   std::vector<double> distances(disc.n_vertices(), 1.0);
   for (Index v = 0; v < disc.n_vertices(); ++v) {
@@ -62,13 +49,13 @@ TEST_F(SpiralChoices, OnlyDiscsWithTheirWholeRimAsSource) {
   EXPECT_FALSE(may_blend_spiral(job, tube, std::vector<double>(tube.n_vertices(), 0.0)));
 }
 
-TEST_F(SpiralChoices, WhatIsChosenCostsLess) {
+TEST(SpiralChoices, WhatIsChosenCostsLess) {
   const TriangleMesh l = test::l_shape(12);
   const TriangleMesh dumbbell =
       test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 3 && j < 5); });
   for (const TriangleMesh* mesh : {&l, &dumbbell}) {
     for (const std::optional<Pattern> pattern : {std::optional(Pattern::spiral), std::optional<Pattern>()}) {
-      const PlanResult result = plan(*mesh, pattern, Blending::automatic, 1);
+      const PlanResult result = test::plan_spiral(*mesh, pattern, Blending::automatic, 1);
       ASSERT_TRUE(result.spiral && result.spiral->by_distance && result.spiral->by_blend);
       const double by_distance = as_length(*result.spiral->by_distance, 1);
       const double by_blend = as_length(*result.spiral->by_blend, 1);
@@ -81,11 +68,11 @@ TEST_F(SpiralChoices, WhatIsChosenCostsLess) {
   }
 }
 
-TEST_F(SpiralChoices, AChosenBlendIsTheOneThatMayBeAskedFor) {
+TEST(SpiralChoices, AChosenBlendIsTheOneThatMayBeAskedFor) {
   const TriangleMesh l = test::l_shape(12);
-  const PlanResult chosen = plan(l, Pattern::spiral, Blending::automatic, 1);
+  const PlanResult chosen = test::plan_spiral(l, Pattern::spiral, Blending::automatic, 1);
   ASSERT_TRUE(chosen.spiral && chosen.spiral->blended);
-  const PlanResult asked = plan(l, Pattern::spiral, Blending::least, 1);
+  const PlanResult asked = test::plan_spiral(l, Pattern::spiral, Blending::least, 1);
   EXPECT_FALSE(asked.spiral) << "nothing was left to choose";
   expect_same_curve(chosen, asked);
   EXPECT_EQ(chosen.distances, asked.distances);
@@ -93,17 +80,17 @@ TEST_F(SpiralChoices, AChosenBlendIsTheOneThatMayBeAskedFor) {
   EXPECT_GE(chosen.gap.covered_fraction, 0.999);
 }
 
-TEST_F(SpiralChoices, PartsThatWouldTakeLongAreNotBlendedUnasked) {
+TEST(SpiralChoices, PartsThatWouldTakeLongAreNotBlendedUnasked) {
   const TriangleMesh square = test::planar_cells(10, 10, [](int, int) { return true; });
   constexpr double spacing = 0.18;
   ASSERT_GT(triangles_for_blend(square, spacing), most_triangles_unasked);
-  const PlanResult chosen = plan(square, Pattern::spiral, Blending::automatic, spacing);
+  const PlanResult chosen = test::plan_spiral(square, Pattern::spiral, Blending::automatic, spacing);
   ASSERT_TRUE(chosen.spiral);
   EXPECT_EQ(chosen.spiral->too_fine, triangles_for_blend(square, spacing));
-  expect_same_curve(chosen, plan(square, Pattern::spiral, Blending::none, spacing));
+  expect_same_curve(chosen, test::plan_spiral(square, Pattern::spiral, Blending::none, spacing));
 }
 
-TEST_F(SpiralChoices, LargeRadiiSwallowNoPasses) {
+TEST(SpiralChoices, LargeRadiiSwallowNoPasses) {
   Job job;
   job.pattern = Pattern::spiral;
   job.spacing = 5;
