@@ -20,6 +20,9 @@ constexpr double most_gap = 1.1;        ///< spacings: beyond what meshes and ro
 constexpr double jump = 30 * degree;
 constexpr double facing_away = degree;  ///< beyond a right angle
 constexpr double share_facing_away = 1e-3;
+/// So many passes across a part of a metre lie 0.05 mm apart, finer than any finishing. More of them are a slip of the
+/// keyboard or of the unit, and would run for days.
+constexpr double most_passes = 20000;
 
 }  // namespace
 
@@ -55,6 +58,37 @@ std::optional<std::string> warning_of_gap(const TriangleMesh& mesh, const GapRep
       "or "
       "another pattern narrows it",
       gap.max / spacing, place);
+}
+
+void check_pass_count(std::span<const double> values, double spacing) {
+  double low = infinity;
+  double high = -infinity;
+  for (const double value : values) {
+    if (!(value < infinity)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(high - low > most_passes * spacing)) return;
+  throw Error(
+      ErrorCode::bad_usage, "the spacing is too small for the part",
+      {.element = "spacing",
+       .value = fmt::format("{:.6g} mm makes {:.3g} passes, limit {}", spacing, (high - low) / spacing, most_passes),
+       .advice = fmt::format("give {:.3g} mm or more, or the unit of the mesh file when that is not mm",
+                             1.001 * (high - low) / most_passes)});
+}
+
+void warn_of_unreached(const TriangleMesh& mesh, std::span<const double> distances,
+                       std::vector<std::string>& warnings) {
+  std::vector<char> reached(mesh.n_components(), 0);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    for (const Index v : mesh.triangle(f)) {
+      if (distances[v] < infinity) reached[mesh.component_of(f)] = 1;
+    }
+  }
+  const auto unreached = std::count(reached.begin(), reached.end(), 0);
+  if (unreached == 0) return;
+  warnings.push_back(
+      fmt::format("{} of the part's {} components hold no source and are not covered", unreached, mesh.n_components()));
 }
 
 void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "isopath/core/progress.h"
 #include "isopath/impact/gap.h"
@@ -22,6 +23,12 @@ std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size)
 /// Says that the largest gap is above 1.1 spacings, and where if a vertex shows it. Not for gaps without end: those are
 /// of components without a source.
 std::optional<std::string> warning_of_gap(const TriangleMesh& mesh, const GapReport& gap, double spacing);
+
+/// Throws Error(bad_usage) when the levels between these values, a spacing apart, are more passes than anybody wants.
+void check_pass_count(std::span<const double> values, double spacing);
+
+/// Says how many components have no vertex with a finite distance.
+void warn_of_unreached(const TriangleMesh& mesh, std::span<const double> distances, std::vector<std::string>& warnings);
 
 /// Throws Error(no_plan) when more than a thousandth of the area that the sources reach (finite `distances`) faces away
 /// from a fixed tool axis by more than a degree. The tool path would refuse such a part, but only once it is planned.

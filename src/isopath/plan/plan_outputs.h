@@ -6,7 +6,7 @@
 
 #include "isopath/core/progress.h"
 #include "isopath/plan/output_folder.h"
-#include "isopath/plan/run_plan.h"
+#include "isopath/plan/plan_result.h"
 
 namespace isopath {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "isopath/plan/run_plan.h"
+#include "isopath/plan/plan_result.h"
 
 namespace isopath {
 
