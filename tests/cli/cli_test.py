@@ -389,6 +389,15 @@ class Plan(Program):
         self.assert_refused(result, NO_PLAN, "faces away", "100 % of the area")
         self.assertNotIn("isolines", result.stderr)
 
+    def test_a_program_that_cannot_hold_the_axes_is_refused_before_planning(self):
+        slope, out = self.path("slope.off"), self.path("out")
+        self.write(slope, "OFF\n4 2 0\n0 0 0\n20 0 0\n20 20 20\n0 20 20\n3 0 1 2\n3 0 2 3\n")
+        result = run("plan", slope, "--post", "gcode3", "-o", out)
+        self.assert_refused(result, NO_PLAN, "gcode3", "45.0 degrees off +Z", "100 % of the area", "--axis 0,0,1")
+        self.assertNotIn("distance field", result.stderr)
+        self.assert_refused(run("plan", slope, "--post", "gcode3", "--axis", "0,1,1", "-o", out), USAGE, "gcode3", "0, 0, 1")
+        self.plan(slope, "--post", "gcode3", "--axis", "0,0,1", "--no-report", "-o", out)
+
     def test_an_edge_that_the_tool_axis_jumps_at_is_warned_of(self):
         folded = self.path("folded.off")
         self.write(folded, "OFF\n6 4 0\n0 0 0\n20 0 0\n20 20 0\n0 20 0\n20 0 -20\n20 20 -20\n"

@@ -98,7 +98,7 @@ Job random_job(std::mt19937_64& rng, const fs::path& folder) {
               .stand_off = number(),
               .ball_diameter = number(),
               .axis_mode = static_cast<AxisMode>(pick(2)),
-              .fixed_axis = Vec3(number(), number(), -number()),
+              .fixed_axis = Vec3(-number(), number(), number()),
               .cover_feed_mm_per_min = number(),
               .link_feed_mm_per_min = number(),
               .rapid_speed_mm_per_min = number(),
@@ -196,6 +196,8 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("planar_direction: [1, 2]\n"), {"line 2", "planar_direction", "a list of 2", "three"});
   expect_all(complaint("planar_direction: [.nan, 0, 0]\n"), {"planar_direction", "nan"});
   expect_all(complaint("programs: [apt]\n"), {"line 2", "programs", "'apt'", "gcode3, gcode5"});
+  expect_all(complaint("programs: [gcode3]\ntool:\n  axis: fixed_direction\n  fixed_axis: [0, 2, 0]\n"),
+             {"programs", "gcode3", "0, 1, 0", "the axis 0, 0, 1"});
   expect_all(complaint("report: yes please\n"), {"line 2", "report", "'yes please'", "true or false"});
   expect_all(complaint("spacing: [1\n"), {"line", "not a YAML file"});
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "isopath/core/error.h"
@@ -92,22 +93,51 @@ TEST(AxisJumps, AreNotSeenInASlowTurnNorAcrossALift) {
   EXPECT_EQ(axis_jumps(lifted, 1).count, 0);
 }
 
-TEST(CheckFacing, RefusesWhatTheSourcesReachAndTheToolDoesNot) {
-  const TriangleMesh sphere = test::icosphere(3, 10);
-  const ToolOptions up{.axis_mode = AxisMode::fixed_direction, .fixed_axis = {0, 0, 3}};
-  std::vector<double> distances(sphere.n_vertices(), 1.0);
+/// What check_reach complains about; empty where it does not.
+std::string unreachable(const TriangleMesh& mesh, const std::vector<double>& distances, const Job& job) {
   try {
-    check_facing(sphere, distances, up);
-    FAIL() << "half a sphere faces away";
+    check_reach(mesh, distances, job);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::no_plan);
-    EXPECT_NE(error.where().value.find("% of the area"), std::string::npos);
+    return error.what();
   }
-  check_facing(sphere, distances, {});  // along the normals anything can be reached
+  return "";
+}
+
+TEST(CheckReach, RefusesWhatTheSourcesReachAndTheToolDoesNot) {
+  const TriangleMesh sphere = test::icosphere(3, 10);
+  Job up;
+  up.tool = {.axis_mode = AxisMode::fixed_direction, .fixed_axis = {0, 0, 3}};
+  std::vector<double> distances(sphere.n_vertices(), 1.0);
+  EXPECT_NE(unreachable(sphere, distances, up).find("% of the area"), std::string::npos) << "half of it faces away";
+  EXPECT_EQ(unreachable(sphere, distances, {}), "") << "along the normals anything can be reached";
   for (Index v = 0; v < sphere.n_vertices(); ++v) {
     if (sphere.position(v).z() < 0.5) distances[v] = infinity;
   }
-  check_facing(sphere, distances, up);
+  EXPECT_EQ(unreachable(sphere, distances, up), "");
+}
+
+TEST(CheckReach, RefusesWhatAProgramCannotHold) {
+  const TriangleMesh sphere = test::icosphere(3, 10);
+  std::vector<double> distances(sphere.n_vertices(), 1.0);
+  const auto complaint = [&](const char* format) {
+    Job job;
+    job.programs = {format};
+    return unreachable(sphere, distances, job);
+  };
+  EXPECT_NE(complaint("gcode3").find("--axis 0,0,1"), std::string::npos);
+  EXPECT_NE(complaint("gcode5").find("farther than the table tilts"), std::string::npos);
+  EXPECT_EQ(complaint("yaml"), "");
+  for (Index v = 0; v < sphere.n_vertices(); ++v) {
+    if (sphere.position(v).z() < 0) distances[v] = infinity;
+  }
+  EXPECT_EQ(complaint("gcode5"), "") << "the table tilts by 100 degrees one way";
+  EXPECT_NE(complaint("gcode3"), "");
+
+  const TriangleMesh table = test::planar_grid(3, 3, 10, 10);
+  Job flat;
+  flat.programs = {"gcode3"};
+  EXPECT_EQ(unreachable(table, std::vector<double>(table.n_vertices(), 0.0), flat), "");
 }
 
 }  // namespace

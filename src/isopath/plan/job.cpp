@@ -89,6 +89,19 @@ void validate_partition(const Job& job) {
   }
 }
 
+void validate_programs(const Job& job) {
+  for (const std::string& format : job.programs) {
+    check_program_format(format);
+    if (job.tool.axis_mode != AxisMode::fixed_direction) continue;
+    const Vec3 axis = job.tool.fixed_axis.normalized();
+    if (holds_axis(format, axis)) continue;
+    refuse("programs",
+           fmt::format("{} with a tool axis of {:.6g}, {:.6g}, {:.6g}", format, axis.x(), axis.y(), axis.z()),
+           format == "gcode3" ? "a program for 3 axes needs the axis 0, 0, 1: turn the part, or take another format"
+                              : "the table does not tilt that far: turn the part, or take poses, for example yaml");
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(LengthUnit unit) {
@@ -214,8 +227,8 @@ void Job::validate() const {
   validate_blend(*this);
   if (pattern == Pattern::double_spiral && scallop > 0)
     refuse("pattern", "double-spiral with a scallop", "double spirals keep a spacing in space only");
-  for (const std::string& format : programs) check_program_format(format);
   tool.validate();
+  validate_programs(*this);
 }
 
 }  // namespace isopath

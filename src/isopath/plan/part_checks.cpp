@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "isopath/core/error.h"
+#include "isopath/post/export.h"
 
 namespace isopath {
 namespace {
@@ -19,10 +20,73 @@ constexpr double largest_part = 20000;  ///< mm
 constexpr double most_gap = 1.1;        ///< spacings: beyond what meshes and roundings account for
 constexpr double jump = 30 * degree;
 constexpr double facing_away = degree;  ///< beyond a right angle
-constexpr double share_facing_away = 1e-3;
+constexpr double share_out_of_reach = 1e-3;
 /// So many passes across a part of a metre lie 0.05 mm apart, finer than any finishing. More of them are a slip of the
 /// keyboard or of the unit, and would run for days.
 constexpr double most_passes = 20000;
+
+/// What of the area that the sources reach a tool does not.
+struct OffArea {
+  double share = 0;
+  Index worst = no_index;  ///< triangle
+};
+/// `excess` is how far a triangle is beyond the limit, above 0 where it is.
+template <class Excess>
+OffArea off_area(const TriangleMesh& mesh, std::span<const double> distances, const Excess& excess) {
+  OffArea off;
+  double reached = 0;
+  double area_off = 0;
+  double most = 0;
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const Triangle& corners = mesh.triangle(f);
+    if (!std::all_of(corners.begin(), corners.end(), [&](Index v) { return distances[v] < infinity; })) continue;
+    const double area = mesh.face_area(f);
+    reached += area;
+    const double by = excess(mesh.face_normal(f));
+    if (!(by > 0)) continue;
+    area_off += area;
+    if (!(by > most)) continue;
+    most = by;
+    off.worst = f;
+  }
+  if (area_off > 0) off.share = area_off / reached;
+  return off;
+}
+
+std::string place_of(const TriangleMesh& mesh, Index face) {
+  const Vec3 place = mesh.position(mesh.triangle(face)[0]);
+  return fmt::format("triangle {} at ({:.4g}, {:.4g}, {:.4g})", face, place.x(), place.y(), place.z());
+}
+
+double degrees_between(const Vec3& a, const Vec3& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) / degree; }
+
+void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool) {
+  if (tool.axis_mode != AxisMode::fixed_direction) return;
+  const Vec3 axis = tool.fixed_axis.normalized();
+  const OffArea away = off_area(mesh, distances, [&](const Vec3& n) { return -std::sin(facing_away) - n.dot(axis); });
+  if (away.share <= share_out_of_reach) return;
+  throw Error(ErrorCode::no_plan, "the surface faces away from the fixed tool axis",
+              {.element = place_of(mesh, away.worst),
+               .value = fmt::format("{:.1f} degrees between normal and axis, limit 90; {:.3g} % of the area",
+                                    degrees_between(mesh.face_normal(away.worst), axis), 100 * away.share),
+               .advice = "use the surface normal as axis, turn the part, or cover only the part that faces the tool"});
+}
+
+void check_tilt(const TriangleMesh& mesh, std::span<const double> distances, const std::string& format) {
+  const OffArea off = off_area(mesh, distances, [&](const Vec3& n) {
+    return n.isZero(0) || holds_axis(format, n) ? 0 : degrees_between(n, Vec3::UnitZ());
+  });
+  if (off.share <= share_out_of_reach) return;
+  const bool three_axes = format == "gcode3";
+  throw Error(
+      ErrorCode::no_plan, fmt::format("the tool stands along the surface's normal, which a program {} cannot", format),
+      {.element = place_of(mesh, off.worst),
+       .value = fmt::format("{:.1f} degrees off +Z{}; {:.3g} % of the area",
+                            degrees_between(mesh.face_normal(off.worst), Vec3::UnitZ()),
+                            three_axes ? "" : ", farther than the table tilts", 100 * off.share),
+       .advice = three_axes ? "keep the tool's axis fixed (--axis 0,0,1), or take a format for 5 axes or poses"
+                            : "turn the part, cover only what the tool can reach, or take poses (--post yaml)"});
+}
 
 }  // namespace
 
@@ -91,33 +155,10 @@ void warn_of_unreached(const TriangleMesh& mesh, std::span<const double> distanc
       fmt::format("{} of the part's {} components hold no source and are not covered", unreached, mesh.n_components()));
 }
 
-void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool) {
-  if (tool.axis_mode != AxisMode::fixed_direction) return;
-  const Vec3 axis = tool.fixed_axis.normalized();
-  double reached = 0;
-  double away = 0;
-  Index worst = no_index;
-  double least = -std::sin(facing_away);
-  for (Index f = 0; f < mesh.n_faces(); ++f) {
-    const Triangle& corners = mesh.triangle(f);
-    if (!std::all_of(corners.begin(), corners.end(), [&](Index v) { return distances[v] < infinity; })) continue;
-    const double area = mesh.face_area(f);
-    reached += area;
-    const double cosine = mesh.face_normal(f).dot(axis);
-    if (cosine >= -std::sin(facing_away)) continue;
-    away += area;
-    if (cosine >= least) continue;
-    least = cosine;
-    worst = f;
-  }
-  if (away <= share_facing_away * reached) return;
-  const Vec3 place = mesh.position(mesh.triangle(worst)[0]);
-  throw Error(
-      ErrorCode::no_plan, "the surface faces away from the fixed tool axis",
-      {.element = fmt::format("triangle {} at ({:.4g}, {:.4g}, {:.4g})", worst, place.x(), place.y(), place.z()),
-       .value = fmt::format("{:.1f} degrees between normal and axis, limit 90; {:.3g} % of the area",
-                            std::acos(std::max(least, -1.0)) / degree, 100 * away / reached),
-       .advice = "use the surface normal as axis, turn the part, or cover only the part that faces the tool"});
+void check_reach(const TriangleMesh& mesh, std::span<const double> distances, const Job& job) {
+  check_facing(mesh, distances, job.tool);
+  if (job.tool.axis_mode == AxisMode::fixed_direction) return;  // the job was checked for that
+  for (const std::string& format : job.programs) check_tilt(mesh, distances, format);
 }
 
 AxisJumps axis_jumps(const ImpactCurve& curve, double reach, const Progress& progress) {

@@ -9,6 +9,7 @@
 #include "isopath/impact/gap.h"
 #include "isopath/impact/impact_curve.h"
 #include "isopath/mesh/triangle_mesh.h"
+#include "isopath/plan/job.h"
 #include "isopath/tool/tool_model.h"
 
 namespace isopath {
@@ -31,8 +32,9 @@ void check_pass_count(std::span<const double> values, double spacing);
 void warn_of_unreached(const TriangleMesh& mesh, std::span<const double> distances, std::vector<std::string>& warnings);
 
 /// Throws Error(no_plan) when more than a thousandth of the area that the sources reach (finite `distances`) faces away
-/// from a fixed tool axis by more than a degree. The tool path would refuse such a part, but only once it is planned.
-void check_facing(const TriangleMesh& mesh, std::span<const double> distances, const ToolOptions& tool);
+/// from a fixed tool axis by more than a degree, or, with a tool along the normals, tilts farther than a program that
+/// the job names can hold. The tool path or the program would refuse such a part, but only once it is planned.
+void check_reach(const TriangleMesh& mesh, std::span<const double> distances, const Job& job);
 
 /// Places where the normal, and with it the axis of a tool that stands along it, turns by more than 30 degrees within a
 /// short way along the surface.

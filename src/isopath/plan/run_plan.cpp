@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/core/quiet_progress.h"
@@ -161,7 +162,7 @@ void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) 
                                  .accuracy = field_accuracy * parts.mesh.size()};
   PatchedPlan plan = plan_patches(parts, options, job.report ? &shown : nullptr, progress);
   result.part.mesh = std::move(parts.mesh);
-  check_facing(result.part.mesh, plan.distances, job.tool);
+  check_reach(result.part.mesh, plan.distances, job);
   result.pattern = plan.patches.front().pattern;
   result.warn_of(plan.impact.warnings);
   result.impact = std::move(plan.impact);
@@ -193,6 +194,8 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
   if (job.min_radius > 0) check_min_radius(mesh, job.min_radius);
+  // all of a connected part is reached: what the tool or a program cannot do there need not wait for the field
+  if (mesh.n_components() == 1) check_reach(mesh, std::vector<double>(mesh.n_vertices(), 0.0), job);
   std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
   if (job.partition.by != PartitionBy::none) {
     plan_by_patches(result, clock, progress);

@@ -145,7 +145,7 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
   const TriangleMesh& mesh = result.part.mesh;
   PartField field = field_of(result, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
-  check_facing(mesh, field.at_vertices, result.job.tool);
+  check_reach(mesh, field.at_vertices, result.job);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
   if (form_of(result.job.blend)) {
     result.pattern = result.job.pattern.value_or(Pattern::spiral);

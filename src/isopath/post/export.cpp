@@ -43,6 +43,12 @@ constexpr std::array<WriteFunction, formats.size()> writers = {
 
 std::span<const ExportFormat> export_formats() { return formats; }
 
+bool holds_axis(std::string_view format, const Vec3& axis) {
+  if (format == "gcode3") return holds_axis(GcodeOptions{.axes = GcodeAxes::xyz}, axis);
+  if (format == "gcode5") return holds_axis(GcodeOptions{.axes = GcodeAxes::xyzac}, axis);
+  return true;
+}
+
 std::string export_tool_path(const ToolPath& path, std::string_view format, const GcodeOptions& options) {
   const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& f) { return f.name == format; });
   if (found != formats.end()) return writers[std::size_t(found - formats.begin())](path, options);

@@ -25,10 +25,11 @@ void require_positive(std::string_view field, double value) {
       {.element = fmt::format("G-code option {}", field), .value = fmt::format("{}; must be finite and > 0", value)});
 }
 
+bool is_straight(const Vec3& axis) { return (axis - Vec3::UnitZ()).norm() <= straight_tolerance; }
+
 void check_straight(const ToolPath& path) {
   for (std::size_t i = 0; i < path.points.size(); ++i) {
-    const double off = (path.points[i].axis - Vec3::UnitZ()).norm();
-    if (off <= straight_tolerance) continue;
+    if (is_straight(path.points[i].axis)) continue;
     throw Error(ErrorCode::no_plan, "the tool axis is not +Z, which a 3-axis program needs",
                 {.element = fmt::format("tool path point {}", i),
                  .value = fmt::format("axis {:.6f} {:.6f} {:.6f}", path.points[i].axis.x(), path.points[i].axis.y(),
@@ -195,6 +196,10 @@ void GcodeOptions::validate() const {
                 {.element = "G-code option limits",
                  .value = fmt::format("a_min {}, a_max {}; a_min must be < a_max", limits.a_min, limits.a_max)});
   }
+}
+
+bool holds_axis(const GcodeOptions& options, const Vec3& axis) {
+  return options.axes == GcodeAxes::xyz ? is_straight(axis) : can_tilt_to(axis, options.limits);
 }
 
 std::string gcode(const ToolPath& path, const GcodeOptions& options) {

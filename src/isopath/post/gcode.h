@@ -27,6 +27,10 @@ struct GcodeOptions {
   void validate() const;
 };
 
+/// Whether a program for these axes can stand the tool along a unit axis in the part's frame: +Z to 1e-6 with 3 axes,
+/// what the table can tilt to with 5.
+bool holds_axis(const GcodeOptions& options, const Vec3& axis);
+
 /// The path as a program for LinuxCNC: millimetres, absolute, one block a point; with 5 axes
 /// more where the axis would otherwise swing out (follow_axis). Lifts are G0, but a lift's last move,
 /// down on to the surface, and all others are G1. With 3 axes feed is in mm/min (G94); with 5 axes X Y Z are the tip in

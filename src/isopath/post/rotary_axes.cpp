@@ -43,6 +43,10 @@ States solutions(const Vec3& axis) {
           State{.angles = {a, std::atan2(axis.x(), axis.y()) * degrees}, .has_c = true}};
 }
 
+bool is_within(const State& state, const RotaryLimits& limits) {
+  return state.angles.a >= limits.a_min && state.angles.a <= limits.a_max;
+}
+
 // The cheaper way to a solution from the states before it.
 State reached(const State& solution, const States& before, double weight) {
   State best;
@@ -89,6 +93,11 @@ Vec3 axis_of(const RotaryAngles& angles) {
   return {std::sin(c) * std::sin(a), std::cos(c) * std::sin(a), std::cos(a)};
 }
 
+bool can_tilt_to(const Vec3& axis, const RotaryLimits& limits) {
+  const States states = solutions(axis);
+  return std::any_of(states.begin(), states.end(), [&](const State& state) { return is_within(state, limits); });
+}
+
 std::vector<RotaryAngles> rotary_angles(const ToolPath& path, const RotaryLimits& limits) {
   std::vector<States> all(path.points.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -96,7 +105,7 @@ std::vector<RotaryAngles> rotary_angles(const ToolPath& path, const RotaryLimits
     const double weight = point.kind == MoveKind::lift ? weight_in_air : 1;
     States states = solutions(point.axis);
     for (State& state : states) {
-      if (state.angles.a < limits.a_min || state.angles.a > limits.a_max) continue;
+      if (!is_within(state, limits)) continue;
       if (i > 0) {
         state = reached(state, all[i - 1], weight);
       } else {

@@ -23,6 +23,9 @@ struct RotaryLimits {
 /// (sin C sin A, cos C sin A, cos A). This is LinuxCNC's xyzac-trt-kins with its default directions.
 Vec3 axis_of(const RotaryAngles& angles);
 
+/// Whether the table can give a point this axis (unit).
+bool can_tilt_to(const Vec3& axis, const RotaryLimits& limits);
+
 /// Angles that give every point its axis. Each axis but ±Z has two solutions, (A, C) and (−A, C + 180°): of all
 /// sequences the one with the least rotation while the tool is on the surface is taken (a shortest path through two
 /// states a point). C is continuous, so it may count many turns; where the axis is Z, C stays where it was.
