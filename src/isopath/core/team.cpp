@@ -10,8 +10,11 @@
 namespace isopath {
 namespace {
 
-/// In the lower half of a ticket: nothing is to be had.
-constexpr std::uint64_t closed = 0xffffffff;
+// Of what a share has left.
+constexpr int part_bits = 18;
+constexpr std::uint64_t most_parts = (1 << part_bits) - 1;
+constexpr std::uint64_t one_loop = std::uint64_t{1} << 2 * part_bits;
+constexpr std::uint64_t one_part = std::uint64_t{1} << part_bits;
 
 std::size_t n_threads() {
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -31,9 +34,8 @@ void wait(int& times) {
 
 }  // namespace
 
-Team::Share::Share() : ticket(closed), past(0) {}
-
-Team::Team() : shares_(n_threads()), context_(tbb::task_group_context::isolated), helpers_(context_) {}
+Team::Team()
+    : size_(n_threads()), shares_((size_ + 1) / 2), context_(tbb::task_group_context::isolated), helpers_(context_) {}
 
 Team::~Team() {
   over_ = true;
@@ -46,20 +48,23 @@ void Team::run(std::size_t n, std::size_t at_a_time, Call call, const void* work
   if (!std::exchange(awake_, true)) {
     for (std::size_t k = 1; k < size(); ++k) helpers_.run([this, k] { help(k); });
   }
-  // The tickets are closed: nobody takes part in the last loop any more, nor in this one before its ticket is out.
+  // Nothing is left in the shares: nobody takes part in the last loop any more, nor in this one before its parts are
+  // out.
   call_ = call;
   work_ = work;
-  at_a_time_ = at_a_time;
+  n_ = n;
+  at_a_time_ = at_a_time = std::max(at_a_time, n / most_parts + 1);
   done_ = 0;
-  for (std::size_t k = 0; k < size(); ++k) {
-    const std::uint64_t loop = (shares_[k].ticket & ~closed) + closed + 1;
-    shares_[k].past = (k + 1) * n / size();
-    shares_[k].ticket = loop + k * n / size();
+  const std::size_t parts = (n + at_a_time - 1) / at_a_time;
+  for (std::size_t k = 0; k < shares_.size(); ++k) {
+    const std::size_t first = 2 * k * parts / size();
+    const std::size_t past = std::min(2 * k + 2, size()) * parts / size();
+    const std::uint64_t loop = shares_[k].left / one_loop + 1;
+    shares_[k].left = loop * one_loop + first * one_part + past;
   }
   while (do_part(0)) {
   }
   for (int times = 0; done_.load(std::memory_order_acquire) < n;) wait(times);
-  for (Share& share : shares_) share.ticket |= closed;
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
@@ -74,31 +79,36 @@ void Team::help(std::size_t member) {
 }
 
 bool Team::do_part(std::size_t member) {
-  for (std::size_t k = 0; k < size(); ++k) {
-    if (do_part_of(shares_[(member + k) % size()], member)) return true;
+  for (std::size_t k = 0; k < shares_.size(); ++k) {
+    if (do_part_of(shares_[(member / 2 + k) % shares_.size()], member)) return true;
   }
   return false;
 }
 
 bool Team::do_part_of(Share& share, std::size_t member) {
-  std::uint64_t ticket = share.ticket.load(std::memory_order_acquire);
+  const bool from_front = member % 2 == 0;
+  std::uint64_t left = share.left.load(std::memory_order_acquire);
   for (;;) {
-    const std::size_t first = ticket & closed;
-    const std::size_t past = share.past.load(std::memory_order_acquire);
+    const std::uint64_t first_part = left / one_part % one_part;
+    const std::uint64_t past_part = left % one_part;
+    if (first_part >= past_part) return false;
+    const std::size_t n = n_.load(std::memory_order_acquire);
     const std::size_t at_a_time = at_a_time_.load(std::memory_order_acquire);
     const Call call = call_.load(std::memory_order_acquire);
     const void* const work = work_.load(std::memory_order_acquire);
-    if (first == closed || first >= past) return false;
-    const std::size_t n = std::min(at_a_time, past - first);
-    // It fails if another member took these, or the loop is not the one any more that was read above.
-    if (!share.ticket.compare_exchange_weak(ticket, ticket + n, std::memory_order_acq_rel)) continue;
+    const std::size_t part = from_front ? first_part : past_part - 1;
+    const std::uint64_t then = from_front ? left + one_part : left - 1;
+    // It fails if another member took a part, or the loop is not the one any more of which the above was read.
+    if (!share.left.compare_exchange_weak(left, then, std::memory_order_acq_rel)) continue;
+    const std::size_t first = part * at_a_time;
+    const std::size_t past = std::min(first + at_a_time, n);
     try {
-      call(work, first, first + n, member);
+      call(work, first, past, member);
     } catch (...) {
       const std::lock_guard guard(lock_);
       if (!thrown_) thrown_ = std::current_exception();
     }
-    done_.fetch_add(n, std::memory_order_release);
+    done_.fetch_add(past - first, std::memory_order_release);
     return true;
   }
 }

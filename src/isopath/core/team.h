@@ -29,13 +29,14 @@ class Team {
   Team& operator=(const Team&) = delete;
 
   /// Members, the caller among them: numbered from 0.
-  std::size_t size() const { return shares_.size(); }
+  std::size_t size() const { return size_; }
 
-  /// Calls work(first, past, member) for parts of [0, n), at the same time, each of `at_a_time` items or fewer unless
-  /// the whole loop is too short to be worth sharing. Returns after the last of them; throws what one of them threw.
-  /// Member k begins with the k-th share of the items: where loops follow each other over the same things, it finds in
-  /// its cache what it left there. One loop at a time, always from the same thread, which is member 0; of fewer than
-  /// 2³² - 1 items.
+  /// Calls work(first, past, member) for parts of [0, n), at the same time, each of `at_a_time` items (more, if that
+  /// makes over 250,000 parts) unless the whole loop is too short to be worth sharing. Returns after the last of them;
+  /// throws what one of them threw. Two members have one share of the items in common: the even one takes parts from
+  /// its front, the odd one from its back, until they meet; then they help others. So where loops follow each other
+  /// over things in the same order, a member finds in its cache what it left there. One loop at a time, always from the
+  /// same thread, which is member 0.
   template <class Work>
   void share(std::size_t n, std::size_t at_a_time, const Work& work) {
     const auto call = [](const void* what, std::size_t first, std::size_t past, std::size_t member) {
@@ -47,11 +48,10 @@ class Team {
  private:
   using Call = void (*)(const void* work, std::size_t first, std::size_t past, std::size_t member);
 
-  /// What a member begins with; the others help when they are done with theirs.
+  /// What two members begin with; the others help when they are done with theirs.
   struct alignas(64) Share {
-    std::atomic<std::uint64_t> ticket;  ///< number of the loop in the upper half, of the next item in the lower
-    std::atomic<std::size_t> past;
-    Share();
+    /// Number of the loop, the first part that is left, and one past the last, in 28, 18 and 18 bits.
+    std::atomic<std::uint64_t> left = 0;
   };
 
   void run(std::size_t n, std::size_t at_a_time, Call call, const void* work);
@@ -60,11 +60,13 @@ class Team {
   bool do_part(std::size_t member);
   bool do_part_of(Share& share, std::size_t member);
 
+  std::size_t size_;
   std::vector<Share> shares_;
   alignas(64) std::atomic<std::size_t> done_ = 0;
   alignas(64) std::atomic<Call> call_ = nullptr;
   std::atomic<const void*> work_ = nullptr;
   std::atomic<std::size_t> at_a_time_ = 1;
+  std::atomic<std::size_t> n_ = 0;
   std::atomic<bool> over_ = false;
   std::mutex lock_;
   std::exception_ptr thrown_;

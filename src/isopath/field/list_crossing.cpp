@@ -91,9 +91,7 @@ void ListPropagation::trim(WindowArrays& windows, std::size_t& n, Index h, bool 
   double* begin = workshop.sides[0].data();
   double* end = workshop.sides[1].data();
   if (several && trim_by_neighbours(windows, n, margin_, begin, end)) {
-    std::copy_n(begin, n, windows.begin);
-    std::copy_n(end, n, windows.end);
-    n = drop_empty(windows, n);
+    n = set_intervals(windows, n, begin, end);
   }
   if (site.memory > 0) windows = news(windows, n, h, workshop);
   if (limits_.accuracy > 0) windows = merged(windows, n, site.length, workshop);

@@ -19,10 +19,10 @@ constexpr double widest_slit = 1e-9;
 /// Rises less than any direction is known to.
 constexpr double least_slope = 1e-20;
 /// Shares of a thread in a round.
-constexpr std::size_t lists_at_a_time = 16;
+constexpr std::size_t lists_at_a_time = 8;
 constexpr std::size_t vertices_at_a_time = 16;
-/// Items are fetched into the cache this many places before their turn.
-constexpr std::size_t ahead = 4;
+/// Items are fetched into the cache this many places before their turn; headers of lists twice as many.
+constexpr std::ptrdiff_t ahead = 4;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
 constexpr double bucket_width = 0.5;
 /// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
@@ -308,15 +308,13 @@ void ListPropagation::fetch_around(Index vertex) const {
   __builtin_prefetch(&states_[vertex]);
 }
 
-void ListPropagation::fetch(const Crossing& crossing) const {
+void ListPropagation::fetch(const Crossing& crossing, const WindowBlocks& blocks) const {
   const Index first = crossing.halfedge - crossing.halfedge % 3;
   for (Index h = first; h < first + 3; ++h) {
     __builtin_prefetch(&sites_[h]);
   }
   for (const WindowBlock* block : crossing.lists) {
-    if (block == nullptr) continue;
-    const char* line = reinterpret_cast<const char*>(block);
-    for (int k = 0; k < 16; ++k) __builtin_prefetch(line + 64 * k);
+    if (block != nullptr) blocks.fetch(block);
   }
 }
 
@@ -336,10 +334,15 @@ bool ListPropagation::take(Index halfedge, Crossing& crossing, Workshop& worksho
 
 void ListPropagation::run_lists(Team& team) {
   waiting_.clear();
-  for (Workshop& workshop : workshops_) {
-    if (bucket_ >= static_cast<Index>(workshop.halfedges.size())) continue;
-    std::vector<Index>& noted = workshop.halfedges[bucket_];
-    waiting_.insert(waiting_.end(), noted.begin(), noted.end());
+  // Odd members of the team take parts from back to front: in this order what they noted lies where they begin.
+  for (std::size_t k = 0; k < workshops_.size(); ++k) {
+    if (bucket_ >= static_cast<Index>(workshops_[k].halfedges.size())) continue;
+    std::vector<Index>& noted = workshops_[k].halfedges[bucket_];
+    if (k % 2 == 0) {
+      waiting_.insert(waiting_.end(), noted.begin(), noted.end());
+    } else {
+      waiting_.insert(waiting_.end(), noted.rbegin(), noted.rend());
+    }
     noted.clear();
   }
   crossings_.resize(waiting_.size());
@@ -358,10 +361,19 @@ void ListPropagation::run_lists(Team& team) {
     }
     workshop.crowded.clear();
   }
+  const auto n = static_cast<std::ptrdiff_t>(crossings_.size());
   team.share(crossings_.size(), lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
     Workshop& workshop = workshops_[member];
-    for (std::size_t i = first; i < past; ++i) {
-      if (i + ahead < past) fetch(crossings_[i + ahead]);
+    const std::ptrdiff_t step = member % 2 == 0 ? 1 : -1;
+    std::ptrdiff_t i = member % 2 == 0 ? first : past - 1;
+    for (std::size_t times = past - first; times > 0; --times, i += step) {
+      // What comes after this part most likely is the next one.
+      const std::ptrdiff_t soon = i + step * ahead;
+      const std::ptrdiff_t later = soon + step * ahead;
+      if (0 <= later && later < n) {
+        for (const WindowBlock* block : crossings_[later].lists) __builtin_prefetch(block);
+      }
+      if (0 <= soon && soon < n) fetch(crossings_[soon], workshop.blocks);
       if (crossings_[i].halfedge != no_index) cross(crossings_[i], workshop);
     }
   });

@@ -14,6 +14,7 @@
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
 #include "isopath/field/list_step.h"
+#include "isopath/field/list_trim.h"
 #include "isopath/field/source_fronts.h"
 #include "isopath/field/vertex_fan.h"
 #include "isopath/field/window_list.h"
@@ -167,7 +168,7 @@ class ListPropagation {
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
 
   void fetch_around(Index vertex) const;
-  void fetch(const Crossing& crossing) const;
+  void fetch(const Crossing& crossing, const WindowBlocks& blocks) const;
   /// The waiting lists as one, sorted; in one of their blocks when there is only one, otherwise in a scratch.
   WindowArrays gather(Crossing& crossing, Workshop& workshop, std::size_t& n, WindowBlock*& owner) const;
   void cross(Crossing& crossing, Workshop& workshop);

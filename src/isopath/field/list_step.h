@@ -20,22 +20,6 @@ struct StepGeometry {
   double rounding = 0;              ///< of coordinates
 };
 
-/// Cuts off what is farther than along the edge from one of its two vertices, where the distances are at most `at_tail`
-/// and `at_head`, and drops windows of which no part or only such parts remain (Xin & Wang 2009, and the part of a
-/// window of which the same holds). Returns the number left.
-std::size_t trim_by_vertices(const WindowArrays& windows, std::size_t n, double length, double at_tail, double at_head,
-                             double margin);
-
-/// Cuts off what a window's neighbour in the list reaches by a shorter way. Where the beams of circles cross, a ray
-/// that is longer at an end of the overlap is longer on all its way beyond the crossing; of straight fronts only the
-/// overlap is cut. Reads `windows`, writes the intervals that are left to `begin` and `end`; an empty one has begin >=
-/// end. Returns false, and writes nothing, where fewer than a quarter of the windows overlap with more than the next
-/// one: it is not worth its time there.
-bool trim_by_neighbours(const WindowArrays& windows, std::size_t n, double margin, double* begin, double* end);
-
-/// Drops empty intervals; returns the number left.
-std::size_t drop_empty(const WindowArrays& windows, std::size_t n);
-
 /// What a list tells about the apex.
 struct ApexReach {
   double distance = infinity;

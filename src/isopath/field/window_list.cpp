@@ -66,26 +66,6 @@ void WindowArrays::set(std::size_t i, const Window& w) const {
   error[i] = w.error;
 }
 
-void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b,
-                 const WindowArrays& to) {
-  // Lists from two sides hardly interleave: they are merged run by run, a few in all.
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < n_a && j < n_b) {
-    const bool from_a = a.begin[i] <= b.begin[j];
-    const double* const first = from_a ? a.begin + i : b.begin + j;
-    const double* const past = from_a ? a.begin + n_a : b.begin + n_b;
-    const double other = from_a ? b.begin[j] : a.begin[i];
-    const auto behind = [&](double x) { return from_a ? x > other : x >= other; };
-    const double* const end = behind(past[-1]) ? std::find_if(first, past, behind) : past;
-    const auto run = static_cast<std::size_t>(end - first);
-    (from_a ? a + i : b + j).copy(run, to + (i + j));
-    (from_a ? i : j) += run;
-  }
-  (a + i).copy(n_a - i, to + (i + j));
-  (b + j).copy(n_b - j, to + (n_a + j));
-}
-
 void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& to) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -47,9 +48,6 @@ struct WindowArrays {
   void copy(std::size_t n, const WindowArrays& to) const;
 };
 
-/// Merges two sorted lists.
-void merge_lists(const WindowArrays& a, std::size_t n_a, const WindowArrays& b, std::size_t n_b,
-                 const WindowArrays& to);
 /// Copies n windows in the order of their begin.
 void sort_list(const WindowArrays& windows, std::size_t n, const WindowArrays& to);
 
@@ -90,6 +88,17 @@ class WindowBlocks {
   /// A block for at least `size` windows.
   WindowBlock* take(std::size_t size);
   void give_back(WindowBlock* block);
+  /// Calls the first windows of a block into the cache; more of a long list follow by themselves. Reads nothing that
+  /// changes, as another thread may be at work on it.
+  void fetch(const WindowBlock* block) const {
+    const Index n = std::min(block->capacity - WindowBlock::lanes, 3 * WindowBlock::lanes);
+    const char* const windows = reinterpret_cast<const char*>(block) + WindowBlock::header_doubles * sizeof(double);
+    for (int k = 0; k < (tagged_ ? WindowArrays::tagged_count : WindowArrays::count); ++k) {
+      for (Index i = 0; i < n; i += WindowBlock::lanes) {
+        __builtin_prefetch(windows + static_cast<std::size_t>(k * block->capacity + i) * sizeof(double));
+      }
+    }
+  }
   WindowArrays arrays(WindowBlock* block) const {
     return WindowArrays::at(block->storage(), static_cast<std::size_t>(block->capacity), tagged_);
   }
