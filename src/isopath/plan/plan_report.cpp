@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,7 +13,13 @@
 namespace isopath {
 namespace {
 
-std::string text(double value) { return fmt::format("{:.4g}", value); }
+/// Four digits, or all those before the point, then in groups of three.
+std::string text(double value) {
+  if (!(value >= 1e4 && value < 1e12)) return fmt::format("{:.4g}", value);
+  std::string digits = fmt::format("{:.0f}", value);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, "\u202f");
+  return digits;
+}
 
 ReportTable figures_table(const PlanResult& result) {
   const PathFigures& f = result.figures;
