@@ -57,6 +57,10 @@ double EdgeEnvelope::least_width(const Window& window) const {
   return std::min(snap_, least_angle * std::abs(window.source.y()));
 }
 
+bool EdgeEnvelope::is_narrow(const Window& window, double width) const {
+  return width < snap_ && width < least_width(window);
+}
+
 bool EdgeEnvelope::is_pinhole(const Window& window) const {
   return !window.filler && window.kind == Window::Kind::point && window.end - window.begin < snap_;
 }
@@ -125,6 +129,11 @@ void EdgeEnvelope::insert(const Window& window) {
     windows_.push_back(w);
     return;
   }
+  if (const Window& last = windows_.back(); w.begin >= last.end && !is_narrow(last, last.end - last.begin)) {
+    w.begin = last.end;  // most come one after the other
+    windows_.push_back(w);
+    return;
+  }
   const auto starts_after = [](double x, const Window& other) { return x < other.begin; };
   auto first = static_cast<std::size_t>(
       std::upper_bound(windows_.begin(), windows_.end(), w.begin - snap_, starts_after) - windows_.begin());
@@ -157,8 +166,7 @@ void EdgeEnvelope::absorb_narrow_parts(const Window& window) {
     if (crack > 0 && crack <= snap_) parts_[i].begin = parts_[i - 1].end;
   }
   const auto is_narrow = [&](const Part& part) {
-    const double width = part.end - part.begin;
-    return width < snap_ && width < least_width(part.old == newcomer ? window : windows_[part.old]);
+    return this->is_narrow(part.old == newcomer ? window : windows_[part.old], part.end - part.begin);
   };
   std::size_t kept = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {

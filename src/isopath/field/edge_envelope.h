@@ -44,6 +44,8 @@ class EdgeEnvelope {
   static constexpr Index newcomer = -2;
 
   double least_width(const Window& window) const;
+  /// True when a part of a window of this width is nothing.
+  bool is_narrow(const Window& window, double width) const;
   /// True for a window below the snap width, which is there for the many directions that pass it: on the edge itself
   /// others are as near.
   bool is_pinhole(const Window& window) const;
