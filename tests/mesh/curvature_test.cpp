@@ -91,6 +91,57 @@ TEST(Curvature, TorusConverges) {
   EXPECT_LT(fine, coarse / 3);
 }
 
+/// Greatest error of fitted normals and curvatures on a patch of a ball of radius 5, over the boundary too.
+Vec2 errors_on_scattered_ball(int n, double radius = 0) {
+  TriangleSoup soup = test::scattered_square(n, 4, 3).soup();
+  for (Vec3& p : soup.positions) p.z() = std::sqrt(25 - (p.x() - 2) * (p.x() - 2) - (p.y() - 2) * (p.y() - 2));
+  const TriangleMesh mesh(std::move(soup));
+  const SurfaceFit fit = fit_surface(mesh, SmoothNormals(mesh), radius);
+  Vec2 worst = Vec2::Zero();
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
+    const Index v = mesh.from(h);
+    const Vec3 out = (mesh.position(v) - Vec3(2, 2, 0)) / 5;
+    worst[0] = std::max(worst[0], (fit.corner_normals[h] - out).norm());
+    worst[1] = std::max({worst[1], std::abs(fit.curvatures[v].max + 0.2), std::abs(fit.curvatures[v].min + 0.2)});
+  }
+  return worst;
+}
+
+TEST(SurfaceFit, NormalsAndCurvaturesConvergeOnIrregularTriangles) {
+  const Vec2 coarse = errors_on_scattered_ball(12);
+  const Vec2 fine = errors_on_scattered_ball(24);
+  EXPECT_LT(coarse[0], 4e-3);
+  EXPECT_LT(coarse[1], 0.02);
+  EXPECT_LT(fine[0], coarse[0] / 4);
+  EXPECT_LT(fine[1], coarse[1] / 2);
+}
+
+TEST(SurfaceFit, ARadiusEvensOutNoise) {
+  TriangleSoup soup = test::planar_grid(40, 40, 8, 8).soup();
+  test::Rng rng(1);
+  for (Vec3& p : soup.positions) p.z() += test::random_real(rng, -1e-3, 1e-3);
+  const TriangleMesh mesh(std::move(soup));
+  const SmoothNormals normals(mesh);
+  const auto rms = [&](double radius) {
+    double sum = 0;
+    const SurfaceFit fit = fit_surface(mesh, normals, radius);
+    for (Index v = 0; v < mesh.n_vertices(); ++v) {  // on the rim there is less to average
+      const Vec2 at = mesh.position(v).head<2>();
+      if (at.minCoeff() > 1 && at.maxCoeff() < 7) sum += fit.curvatures[v].max * fit.curvatures[v].max;
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_LT(rms(0.8), 0.5 * rms(0));
+}
+
+TEST(SurfaceFit, AVertexOnACreaseHasANormalForEachSide) {
+  const TriangleMesh mesh = test::cube(4, 1);
+  const SurfaceFit fit = fit_surface(mesh, SmoothNormals(mesh));
+  for (Index h = 0; h < mesh.n_halfedges(); ++h) {
+    EXPECT_LT((fit.corner_normals[h] - mesh.face_normal(TriangleMesh::face_of(h))).norm(), 1e-9);
+  }
+}
+
 TEST(Curvature, CreasesDoNotMakeACubeRound) {
   const TriangleMesh mesh = test::box({0, 0, 0}, {1, 2, 3});
   for (const PrincipalCurvatures& k : principal_curvatures(mesh, SmoothNormals(mesh))) {

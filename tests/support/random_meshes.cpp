@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <utility>
@@ -105,6 +107,31 @@ void place_vertices(Rng& rng, TriangleSoup& soup, const RandomMeshOptions& optio
   for (Vec3& p : soup.positions) p.x() *= squeeze;
 }
 
+/// Whether d lies well inside the circle through a face's corners, which run counter-clockwise.
+bool in_circle(const TriangleSoup& soup, const Triangle& face, const Vec2& d) {
+  std::array<Vec2, 3> to;
+  for (int i = 0; i < 3; ++i) to[i] = soup.positions[face[i]].head<2>() - d;
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += to[i].squaredNorm() * cross(to[(i + 1) % 3], to[(i + 2) % 3]);
+  return sum > 1e-9 * (to[0] - to[1]).squaredNorm() * (to[1] - to[2]).squaredNorm();
+}
+
+/// Takes the last point into a Delaunay triangulation (Bowyer 1981, Watson 1981).
+void insert_last_point(TriangleSoup& soup) {
+  const auto v = static_cast<Index>(soup.positions.size()) - 1;
+  std::set<std::pair<Index, Index>> rim;
+  std::erase_if(soup.triangles, [&](const Triangle& face) {
+    if (!in_circle(soup, face, soup.positions[v].head<2>())) return false;
+    for (int i = 0; i < 3; ++i) {
+      if (rim.erase({face[(i + 1) % 3], face[i]}) == 0) rim.insert({face[i], face[(i + 1) % 3]});
+    }
+    return true;
+  });
+  for (const auto& [a, b] : rim) {
+    if (signed_area(soup, a, b, v) > 1e-12) soup.triangles.push_back({a, b, v});
+  }
+}
+
 }  // namespace
 
 double random_real(Rng& rng, double low, double high) { return std::uniform_real_distribution<>(low, high)(rng); }
@@ -128,6 +155,32 @@ TriangleMesh random_mesh(Rng& rng, const RandomMeshOptions& options) {
         continue;
       }
     }
+  }
+  return TriangleMesh(std::move(soup));
+}
+
+TriangleMesh scattered_square(int n, double side, std::uint64_t seed) {
+  Rng rng(seed);
+  const double cell = side / n;
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
+  soup.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (int k = 0; k < 4; ++k) {
+    for (int i = 1; i < n; ++i) {
+      const double along = cell * (i + random_real(rng, -0.3, 0.3));
+      const double x = k % 2 == 0 ? along : (k == 1 ? side : 0);
+      const double y = k % 2 == 1 ? along : (k == 2 ? side : 0);
+      soup.positions.emplace_back(x, y, 0);
+      insert_last_point(soup);
+    }
+  }
+  for (int i = 0; i < n * n; ++i) {
+    const Vec3 p(random_real(rng, 0.2 * cell, side - 0.2 * cell), random_real(rng, 0.2 * cell, side - 0.2 * cell), 0);
+    const bool near = std::any_of(soup.positions.begin(), soup.positions.end(),
+                                  [&](const Vec3& q) { return (p - q).norm() < 0.2 * cell; });
+    if (near) continue;
+    soup.positions.push_back(p);
+    insert_last_point(soup);
   }
   return TriangleMesh(std::move(soup));
 }

@@ -25,6 +25,9 @@ struct GridOptions {
 
 /// Rectangle [0, width] x [0, height] in the plane z = 0 of nx by ny cells; vertex (i, j) has index j (nx + 1) + i.
 TriangleMesh planar_grid(int nx, int ny, double width, double height, const GridOptions& options = {});
+/// The Delaunay triangulation of some n² random points of the square [0, side]², n random ones along each side; none
+/// are nearer to each other than a fifth of side / n.
+TriangleMesh scattered_square(int n, double side, std::uint64_t seed);
 /// The graph z = height(x, y) over the same rectangle and with the same vertices.
 TriangleMesh height_grid(int nx, int ny, double width, double depth,
                          const std::function<double(double, double)>& height);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace isopath {
 namespace {
@@ -41,69 +42,85 @@ double angle_of(const TriangleMesh& mesh, const std::vector<Index>& fan) {
   return sum;
 }
 
-/// The fan of the vertex's smooth group with the largest angle.
-std::vector<Index> widest_fan(const TriangleMesh& mesh, const SmoothNormals& normals, Index vertex) {
-  std::vector<Index> widest;
-  double angle = -1;
-  const Index first = mesh.outgoing(vertex);
-  Index h = first;
-  do {
-    // One look at each group: where it begins, or anywhere when the vertex has only one.
-    if (h == first || normals.is_crease(h)) {
-      std::vector<Index> fan = smooth_fan(mesh, normals, h);
-      const double its_angle = angle_of(mesh, fan);
-      if (its_angle > angle) {
-        angle = its_angle;
-        widest = std::move(fan);
-      }
-    }
-    h = mesh.next_outgoing(h);
-  } while (h != no_index && h != first);
-  return widest;
-}
+/// Fits of the third degree take this many points; of fewer, one of the second is made.
+constexpr std::size_t points_of_cubic = 12;
+/// So few points, as at the corners of a boundary, make a further ring worth its distance.
+constexpr std::size_t fewest_points = 8;
+/// Points beyond two rings that a fit looks at, at most.
+constexpr std::size_t most_points = 80;
+/// A fit that leans farther from the mean of the faces' normals than this has too little to go by.
+constexpr double most_slope = 0.6;
 
-/// The vertices within two rings that are reached without crossing a crease, in ascending order.
-std::vector<Index> neighbours(const TriangleMesh& mesh, const SmoothNormals& normals, const std::vector<Index>& fan) {
-  std::vector<Index> found;
-  for (const Index spoke : fan) {
-    for (const Index h : {TriangleMesh::next(spoke), TriangleMesh::prev(spoke)}) {
-      for (const Index g : smooth_fan(mesh, normals, h)) {
-        found.push_back(mesh.to(g));
-        found.push_back(mesh.from(TriangleMesh::prev(g)));
+/// The vertices around one that are reached without crossing a crease: two rings, then all within the radius, and
+/// further rings while they are too few.
+class Surroundings {
+ public:
+  Surroundings(const TriangleMesh& mesh, const SmoothNormals& normals, const std::vector<Index>& fan, double radius)
+      : mesh_(mesh), centre_(mesh.from(fan.front())) {
+    std::vector<Index> ring;
+    for (const Index h : fan) look_along(h, infinity, ring);
+    for (int rings = 1; !ring.empty(); ++rings) {
+      const bool few = rings < 2 || found_.size() < fewest_points;
+      if (!few && found_.size() >= most_points) break;
+      const std::vector<Index> last = std::move(ring);
+      ring.clear();
+      for (const Index h : last) {
+        for (const Index g : smooth_fan(mesh, normals, h)) look_along(g, few ? infinity : radius, ring);
       }
     }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::erase(found, mesh.from(fan.front()));
-  return found;
-}
+  const std::vector<Index>& vertices() const { return found_; }
 
-/// The quadratic z = g·x + ½ xᵀ h x in the frame of `axes`.
+ private:
+  /// Takes the two other corners of a half-edge's face; each is kept with a half-edge that leaves it in that face.
+  void look_along(Index h, double radius, std::vector<Index>& ring) {
+    for (const Index leaving : {TriangleMesh::next(h), TriangleMesh::prev(h)}) {
+      const Index v = mesh_.from(leaving);
+      if (v == centre_ || std::find(found_.begin(), found_.end(), v) != found_.end()) continue;
+      if ((mesh_.position(v) - mesh_.position(centre_)).norm() > radius) continue;
+      found_.push_back(v);
+      ring.push_back(leaving);
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  Index centre_;
+  std::vector<Index> found_;
+};
+
+/// The height z = g·x + ½ xᵀ h x + cubic terms in the frame of `axes`.
 struct Quadratic {
   Vec2 gradient;
   Matrix2 hessian;
 };
 
-/// Fits the points (x, y, z) by weighted least squares, weight 1 / distance. The axes of x and y are those of the
-/// points' spread; dividing by it makes the problem well conditioned for any aspect ratio, so that the normal equations
-/// serve. Terms that the points leave open vanish.
-Quadratic fit(const std::vector<Vec3>& points, const Vec2& spread) {
-  using Vector5 = Eigen::Matrix<double, 5, 1>;
-  Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
-  Vector5 right = Vector5::Zero();
+/// Fits the points (x, y, z) by weighted least squares, weight 1 / distance; with cubic terms or without. A distance is
+/// at least `blunt`, in spreads, so that not only the nearest points are heard where noise is to be evened out. The
+/// axes of x and y are those of the points' spread; dividing by it makes the problem well conditioned for any aspect
+/// ratio, so that the normal equations serve. Terms that the points leave open vanish, those of the highest degree
+/// first.
+template <int terms>
+Quadratic fit(const std::vector<Vec3>& points, const Vec2& spread, double blunt) {
+  using Vector = Eigen::Matrix<double, terms, 1>;
+  Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+  Vector right = Vector::Zero();
   for (const Vec3& p : points) {
     const double x = p.x() / spread.x();
     const double y = p.y() / spread.y();
-    const double distance = std::max(std::hypot(x, y), 1e-3);
-    const Vector5 terms{x, y, 0.5 * x * x, x * y, 0.5 * y * y};
-    const Vector5 weighted = terms / (distance * distance);
-    normal += terms * weighted.transpose();
+    const double distance = std::max(std::hypot(x, y), std::max(blunt, 1e-3));
+    Vector term;
+    term.template head<5>() << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
+    if constexpr (terms == 9) term.template tail<4>() << x * x * x, x * x * y, x * y * y, y * y * y;
+    const Vector weighted = term / (distance * distance);
+    normal += term * weighted.transpose();
     right += p.z() * weighted;
   }
   // A trace of regularisation keeps the terms small that the points leave open.
-  normal.diagonal().array() += 1e-11 * normal.trace();
-  const Vector5 c = normal.ldlt().solve(right);
+  const double trace = normal.trace();
+  normal.diagonal().template head<2>().array() += 1e-12 * trace;
+  normal.diagonal().template tail<terms - 2>().array() += 1e-11 * trace;
+  if constexpr (terms == 9) normal.diagonal().template tail<4>().array() += 1e-8 * trace;
+  const Vector c = normal.ldlt().solve(right);
   Quadratic q;
   q.gradient = {c[0] / spread.x(), c[1] / spread.y()};
   q.hessian(0, 0) = c[2] / (spread.x() * spread.x());
@@ -112,27 +129,38 @@ Quadratic fit(const std::vector<Vec3>& points, const Vec2& spread) {
   return q;
 }
 
-PrincipalCurvatures curvatures_at(const TriangleMesh& mesh, const SmoothNormals& normals, Index vertex) {
-  const std::vector<Index> fan = widest_fan(mesh, normals, vertex);
+struct VertexFit {
+  Vec3 normal;
+  PrincipalCurvatures curvature;
+};
+
+/// The fit around a vertex to the smooth group of this fan.
+VertexFit fit_at(const TriangleMesh& mesh, const SmoothNormals& normals, const std::vector<Index>& fan, double radius) {
+  const Index vertex = mesh.from(fan.front());
   const Vec3& n = normals.at_corner(TriangleMesh::face_of(fan.front()), fan.front() % 3);
   const Vec3 ex = n.unitOrthogonal();
   const Vec3 ey = n.cross(ex);
   std::vector<Vec3> points;
+  double reach = 0;
   Matrix2 spread = Matrix2::Zero();
-  for (const Index v : neighbours(mesh, normals, fan)) {
+  const Surroundings around(mesh, normals, fan, radius);
+  for (const Index v : around.vertices()) {
     const Vec3 d = mesh.position(v) - mesh.position(vertex);
     points.emplace_back(d.dot(ex), d.dot(ey), d.dot(n));
     spread += points.back().head<2>() * points.back().head<2>().transpose();
+    reach = std::max(reach, d.norm());
   }
   Eigen::SelfAdjointEigenSolver<Matrix2> axes;
   axes.computeDirect(spread);
   const double wide = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
-  if (!(wide > 0)) return {0, 0, ex, ey};
+  if (!(wide > 0)) return {n, {0, 0, ex, ey}};
   // The spread is a sum and not a mean: only the ratio of its axes matters to the fit. Points on one line leave the
   // other axis open; it is scaled as if they were a sliver, and stays flat.
   const double narrow = std::max(std::sqrt(std::max(0.0, axes.eigenvalues()[0])), 1e-6 * wide);
   for (Vec3& p : points) p.head<2>() = Vec2(axes.eigenvectors().transpose() * p.head<2>());
-  const Quadratic q = fit(points, {narrow, wide});
+  const Vec2 scale = Vec2(narrow, wide) / std::sqrt(static_cast<double>(points.size()));
+  const double blunt = reach > 0 ? 1.5 * std::min(1.0, radius / reach) : 0;
+  const Quadratic q = points.size() < points_of_cubic ? fit<5>(points, scale, blunt) : fit<9>(points, scale, blunt);
 
   // The shape operator of the graph, from its two fundamental forms, in an orthonormal basis of the tangent plane: the
   // direction of the gradient and the one across it. Its columns are their coordinates in the axes.
@@ -144,12 +172,37 @@ PrincipalCurvatures curvatures_at(const TriangleMesh& mesh, const SmoothNormals&
   const Matrix2 second = tangent.transpose() * q.hessian * tangent / stretch;
   Eigen::SelfAdjointEigenSolver<Matrix2> shape;
   shape.computeDirect(second);
+  const auto in_space = [&](const Vec2& in_axes) {
+    const Vec2 plane = axes.eigenvectors() * in_axes;
+    return Vec3(plane.x() * ex + plane.y() * ey);
+  };
   const auto direction = [&](int i) {
     const Vec2 in_axes = tangent * shape.eigenvectors().col(i);
-    const Vec2 plane = axes.eigenvectors() * in_axes;
-    return Vec3((plane.x() * ex + plane.y() * ey + q.gradient.dot(in_axes) * n).normalized());
+    return Vec3((in_space(in_axes) + q.gradient.dot(in_axes) * n).normalized());
   };
-  return {shape.eigenvalues()[1], shape.eigenvalues()[0], direction(1), direction(0)};
+  const Vec3 normal = slope < most_slope ? Vec3((n - in_space(q.gradient)).normalized()) : n;
+  return {normal, {shape.eigenvalues()[1], shape.eigenvalues()[0], direction(1), direction(0)}};
+}
+
+/// Fits each smooth group around a vertex; the curvature is that of the group with the largest angle.
+void fit_vertex(const TriangleMesh& mesh, const SmoothNormals& normals, Index vertex, double radius, SurfaceFit& out) {
+  double widest = -1;
+  const Index first = mesh.outgoing(vertex);
+  Index h = first;
+  do {
+    // One look at each group: where it begins, or anywhere when the vertex has only one.
+    if (h == first || normals.is_crease(h)) {
+      const std::vector<Index> fan = smooth_fan(mesh, normals, h);
+      const VertexFit found = fit_at(mesh, normals, fan, radius);
+      for (const Index corner : fan) out.corner_normals[corner] = found.normal;
+      const double angle = angle_of(mesh, fan);
+      if (angle > widest) {
+        widest = angle;
+        out.curvatures[vertex] = found.curvature;
+      }
+    }
+    h = mesh.next_outgoing(h);
+  } while (h != no_index && h != first);
 }
 
 }  // namespace
@@ -161,14 +214,20 @@ double PrincipalCurvatures::along(const Vec3& direction) const {
   return length2 > 0 ? (max * a * a + min * b * b) / length2 : 0;
 }
 
-std::vector<PrincipalCurvatures> principal_curvatures(const TriangleMesh& mesh, const SmoothNormals& normals) {
-  std::vector<PrincipalCurvatures> out(mesh.n_vertices());
+SurfaceFit fit_surface(const TriangleMesh& mesh, const SmoothNormals& normals, double radius) {
+  SurfaceFit out;
+  out.curvatures.resize(mesh.n_vertices());
+  out.corner_normals.resize(mesh.n_halfedges());
   tbb::parallel_for(tbb::blocked_range<Index>(0, mesh.n_vertices(), 256), [&](const auto& range) {
     for (Index v = range.begin(); v < range.end(); ++v) {
-      if (mesh.outgoing(v) != no_index) out[v] = curvatures_at(mesh, normals, v);
+      if (mesh.outgoing(v) != no_index) fit_vertex(mesh, normals, v, radius, out);
     }
   });
   return out;
+}
+
+std::vector<PrincipalCurvatures> principal_curvatures(const TriangleMesh& mesh, const SmoothNormals& normals) {
+  return fit_surface(mesh, normals).curvatures;
 }
 
 }  // namespace isopath

@@ -24,12 +24,23 @@ struct PrincipalCurvatures {
   double along(const Vec3& direction) const;
 };
 
-/// Principal curvatures at every vertex, by a weighted least-squares fit of a quadratic height function to the vertices
-/// within two rings (Cazals & Pouget 2005). Exact on planes; the error is of the order of the edge length.
+/// What a smooth surface through the vertices of a mesh looks like at each of them.
+struct SurfaceFit {
+  std::vector<PrincipalCurvatures> curvatures;  ///< at every vertex
+  std::vector<Vec3> corner_normals;  ///< unit, at corner i of face f: [3 f + i]; the corners of a smooth group agree
+};
+
+/// A cubic height function is fitted around every vertex to those within two rings, by weighted least squares (Cazals &
+/// Pouget 2005): of edges of length h, normals are right to h³ and curvatures to h², however irregular the triangles
+/// are. Where there are too few vertices, as at the corners of a boundary, further rings are taken, or a quadratic.
+/// With a `radius` (mm) all vertices within it are looked at, up to some 80: that evens out the noise of scans.
 ///
-/// Does not look across the creases of `normals`: a vertex on a crease takes the surface of the smooth group that has
-/// the largest angle there. The fit is scaled along the main axes of its points, so that slivers do not spoil it;
-/// what the points leave open (a boundary corner with few of them) counts as flat.
+/// Does not look across the creases of `normals`: a vertex on a crease has a normal for each smooth group around it,
+/// and the curvature of the one with the largest angle there. The fit is scaled along the main axes of its points, so
+/// that slivers do not spoil it; what the points leave open counts as flat.
+SurfaceFit fit_surface(const TriangleMesh& mesh, const SmoothNormals& normals, double radius = 0);
+
+/// The curvatures of `fit_surface` alone.
 std::vector<PrincipalCurvatures> principal_curvatures(const TriangleMesh& mesh, const SmoothNormals& normals);
 
 }  // namespace isopath

@@ -121,11 +121,14 @@ void warn_of_gouges(PlanResult& result) {
 }
 
 /// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
-std::optional<IntrinsicGeometry> warp_for_scallop(const Job& job, PlanResult& result, Progress& progress) {
-  if (!(job.scallop > 0)) return std::nullopt;
+std::optional<IntrinsicGeometry> warp_for_scallop(const std::optional<FittedPart>& fitted, PlanResult& result,
+                                                  Progress& progress) {
+  const Job& job = result.job;
+  if (!fitted) return std::nullopt;
   result.scallop.emplace();
   if (job.pattern == Pattern::planar) return std::nullopt;
-  ScallopMetric metric = scallop_metric(result.part.mesh, 0.5 * job.tool.ball_diameter, result.spacing, progress);
+  ScallopMetric metric =
+      scallop_metric(fitted->mesh, fitted->fit.curvatures, 0.5 * job.tool.ball_diameter, result.spacing, progress);
   result.warn_of(metric.warnings);
   result.scallop->clamped_fraction = metric.clamped_fraction;
   result.scallop->gouged_fraction = metric.gouged_fraction;
@@ -196,13 +199,20 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (job.min_radius > 0) check_min_radius(mesh, job.min_radius);
   // all of a connected part is reached: what the tool or a program cannot do there need not wait for the field
   if (mesh.n_components() == 1) check_reach(mesh, std::vector<double>(mesh.n_vertices(), 0.0), job);
-  std::optional<IntrinsicGeometry> warped = warp_for_scallop(job, result, progress);
+  std::optional<FittedPart> fitted;
+  if (job.scallop > 0) fitted.emplace(mesh, result.spacing);
+  std::optional<IntrinsicGeometry> warped = warp_for_scallop(fitted, result, progress);
   if (job.partition.by != PartitionBy::none) {
     plan_by_patches(result, clock, progress);
   } else {
     plan_whole(result, warped, clock, progress);
   }
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
+  std::optional<CurvedSurface> curved;
+  if (fitted) {
+    curved = surface_over(*fitted, mesh);
+    take_normals(*curved, result.impact.curve);
+  }
 
   ToolOptions tool = job.tool;
   tool.chord_tolerance = std::min(tool.chord_tolerance, most_chord_over_spacing * result.spacing);
@@ -222,7 +232,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
 
   if (result.scallop) {
     result.scallop->measured =
-        measure_scallop(mesh, result.impact.curve, 0.5 * job.tool.ball_diameter, result.spacing, progress);
+        measure_scallop(mesh, *curved, result.impact.curve, 0.5 * job.tool.ball_diameter, result.spacing, progress);
     clock.ends("scallop");
   }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "isopath/field/warp.h"
-#include "isopath/mesh/curvature.h"
 #include "isopath/mesh/normals.h"
 #include "isopath/mesh/surface_walk.h"
 
@@ -34,9 +33,10 @@ double share_of(const TriangleMesh& mesh, const std::vector<Index>& vertices) {
 
 }  // namespace
 
-ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, double pitch, Progress& progress) {
+ScallopMetric scallop_metric(const TriangleMesh& mesh, std::span<const PrincipalCurvatures> curvatures,
+                             double ball_radius, double pitch, Progress& progress) {
   progress.stage("metric");
-  const ToolMetric tool = tool_metric(principal_curvatures(mesh, SmoothNormals(mesh)), ball_radius);
+  const ToolMetric tool = tool_metric(curvatures, ball_radius);
   WarpedSurface surface = warp_surface(mesh, tool.tensors, {.shortest_edge = smallest_in_pitches * pitch}, progress);
   ScallopMetric metric;
   metric.clamped_fraction = share_of(mesh, tool.clamped);
@@ -61,6 +61,19 @@ ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, doubl
         surface.broken_faces, surface.added_length));
   }
   return metric;
+}
+
+FittedPart::FittedPart(const TriangleMesh& part, double pitch)
+    : mesh(part), fit(fit_surface(mesh, SmoothNormals(mesh), pitch)) {}
+
+CurvedSurface surface_over(const FittedPart& part, const TriangleMesh& finer) {
+  return CurvedSurface(part.mesh, part.fit).over(part.mesh, finer);
+}
+
+void take_normals(const CurvedSurface& surface, ImpactCurve& curve) {
+  for (ImpactPoint& point : curve.points) {
+    if (point.at.valid()) point.normal = surface.at(point.at).normal;
+  }
 }
 
 double cover_length(const TriangleMesh& mesh, const ImpactCurve& curve, const IntrinsicGeometry& metric) {

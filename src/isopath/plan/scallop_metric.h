@@ -1,11 +1,14 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/impact/impact_curve.h"
+#include "isopath/mesh/curvature.h"
+#include "isopath/mesh/curved_surface.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
@@ -19,10 +22,25 @@ struct ScallopMetric {
   std::vector<std::string> warnings;
 };
 
-/// For passes at this pitch: triangles smaller than a quarter of it are only split to keep the triangle inequality.
-/// Throws Error(bad_usage) unless the radius (mm) is positive, Error(cancelled) on request.
-ScallopMetric scallop_metric(const TriangleMesh& mesh, double ball_radius, double pitch,
-                             Progress& progress = Progress::none());
+/// From the curvatures at the vertices, for passes at this pitch: triangles smaller than a quarter of it are only split
+/// to keep the triangle inequality. Throws Error(bad_usage) unless the radius (mm) is positive, Error(cancelled) on
+/// request.
+ScallopMetric scallop_metric(const TriangleMesh& mesh, std::span<const PrincipalCurvatures> curvatures,
+                             double ball_radius, double pitch, Progress& progress = Progress::none());
+
+/// The part as it was read, with the smooth surface that it stands for: fitted over a pitch, as bumps narrower than
+/// that lie between two passes and noise does.
+struct FittedPart {
+  FittedPart(const TriangleMesh& part, double pitch);
+  TriangleMesh mesh;
+  SurfaceFit fit;
+};
+
+/// The smooth surface as seen from a finer mesh of the part.
+CurvedSurface surface_over(const FittedPart& part, const TriangleMesh& finer);
+/// Gives the points of a curve on the mesh the normals of the smooth surface over it: a ball's centre stands along
+/// them, and where they are wrong so is the distance of its passes.
+void take_normals(const CurvedSurface& surface, ImpactCurve& curve);
 
 /// Length of a curve's covering moves in a metric, and the area in it.
 double cover_length(const TriangleMesh& mesh, const ImpactCurve& curve, const IntrinsicGeometry& metric);

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "isopath/core/error.h"
-#include "isopath/mesh/normals.h"
 #include "isopath/mesh/surface_walk.h"
 #include "isopath/tool/ball_sweep.h"
 
@@ -29,34 +28,6 @@ constexpr double first_in_spacings = 0.1;  ///< nearer cusps are those of passes
 constexpr double sample_in_spacings = 0.5;
 constexpr std::size_t most_samples = 6000;
 constexpr double parts_of_edge = 4;  ///< the centre's way across a face is curved: pieces of it are this much shorter
-
-/// The surface that the normals describe between the vertices (Phong tessellation, Boubekeur & Alexa 2008, with the
-/// weight 1/2 that reproduces circles to fourth order).
-class CurvedSurface {
- public:
-  explicit CurvedSurface(const TriangleMesh& mesh) : mesh_(mesh), normals_(mesh) {}
-
-  struct Point {
-    Vec3 position;
-    Vec3 normal;
-  };
-  Point at(Index face, const Vec3& barycentric) const {
-    const Vec3 flat = position_of(mesh_, {face, barycentric});
-    Vec3 lift = Vec3::Zero();
-    Vec3 normal = Vec3::Zero();
-    for (int i = 0; i < 3; ++i) {
-      const Vec3& n = normals_.at_corner(face, i);
-      lift -= barycentric[i] * (flat - mesh_.position(mesh_.triangle(face)[i])).dot(n) * n;
-      normal += barycentric[i] * n;
-    }
-    return {flat + 0.5 * lift, normal.stableNormalized()};
-  }
-  const TriangleMesh& mesh() const { return mesh_; }
-
- private:
-  const TriangleMesh& mesh_;
-  SmoothNormals normals_;
-};
 
 /// A covering move: a straight piece of the curve in one face.
 struct Move {
@@ -80,19 +51,18 @@ std::vector<Move> covering_moves(const TriangleMesh& mesh, const ImpactCurve& cu
   return moves;
 }
 
-std::vector<BallSweep::Segment> centre_segments(const CurvedSurface& surface, const std::vector<Move>& moves,
-                                                double radius, double longest) {
+std::vector<BallSweep::Segment> centre_segments(const TriangleMesh& mesh, const CurvedSurface& surface,
+                                                const std::vector<Move>& moves, double radius, double longest) {
   std::vector<BallSweep::Segment> segments;
   for (const Move& move : moves) {
     double edge = 0;
-    for (Index h = 3 * move.face; h < 3 * move.face + 3; ++h)
-      edge = std::max(edge, surface.mesh().edge_length(surface.mesh().edge_of(h)));
+    for (Index h = 3 * move.face; h < 3 * move.face + 3; ++h) edge = std::max(edge, mesh.edge_length(mesh.edge_of(h)));
     const double piece = std::min(edge / parts_of_edge, 0.5 * longest);
     const int parts = static_cast<int>(std::clamp(std::ceil(move.length / piece), 1.0, 1e6));
     Vec3 last = Vec3::Zero();
     for (int k = 0; k <= parts; ++k) {
       const double t = static_cast<double>(k) / parts;
-      const CurvedSurface::Point point = surface.at(move.face, (1 - t) * move.from + t * move.to);
+      const CurvedSurface::Point point = surface.at({move.face, (1 - t) * move.from + t * move.to});
       const Vec3 centre = point.position + radius * point.normal;
       if (k > 0) segments.push_back({last, centre});
       last = centre;
@@ -170,8 +140,8 @@ class StraightWay {
 
 class CuspFinder {
  public:
-  CuspFinder(const CurvedSurface& surface, const BallSweep& sweep, double spacing)
-      : surface_(surface), sweep_(sweep), spacing_(spacing) {}
+  CuspFinder(const TriangleMesh& mesh, const CurvedSurface& surface, const BallSweep& sweep, double spacing)
+      : mesh_(mesh), surface_(surface), sweep_(sweep), spacing_(spacing) {}
 
   std::optional<Cusp> beside(const Move& move, double t, bool left) {
     std::optional<Cusp> cusp;
@@ -183,11 +153,10 @@ class CuspFinder {
 
  private:
   std::optional<Cusp> beside(const Move& move, double t, bool left, const Reach& reach) {
-    const TriangleMesh& mesh = surface_.mesh();
     const SurfacePoint start{move.face, (1 - t) * move.from + t * move.to};
-    const Vec3 along = position_of(mesh, {move.face, move.to}) - position_of(mesh, {move.face, move.from});
-    const StraightWay way(mesh, start, along, left, reach.walk * spacing_);
-    const CurvedSurface::Point pass = surface_.at(start.face, start.barycentric);
+    const Vec3 along = position_of(mesh_, {move.face, move.to}) - position_of(mesh_, {move.face, move.from});
+    const StraightWay way(mesh_, start, along, left, reach.walk * spacing_);
+    const CurvedSurface::Point pass = surface_.at(start);
     sweep_.near(pass.position + sweep_.radius() * pass.normal, reach.sight * spacing_, near_);
     keep_ahead(pass, left ? Vec3(pass.normal.cross(along)) : Vec3(along.cross(pass.normal)), along.normalized(), reach);
     const double step = spacing_ / steps_per_spacing;
@@ -220,8 +189,7 @@ class CuspFinder {
   }
 
   double height_at(const StraightWay& way, double arc) const {
-    const SurfacePoint at = way.at(arc);
-    const CurvedSurface::Point point = surface_.at(at.face, at.barycentric);
+    const CurvedSurface::Point point = surface_.at(way.at(arc));
     return sweep_.height(point.position, point.normal, near_);
   }
 
@@ -239,18 +207,19 @@ class CuspFinder {
         high = y;
       }
     }
-    const SurfacePoint top = way.at(0.5 * (low + high));
-    return {pass, surface_.at(top.face, top.barycentric).position, height_at(way, 0.5 * (low + high))};
+    const double top = 0.5 * (low + high);
+    return {pass, surface_.at(way.at(top)).position, height_at(way, top)};
   }
 
+  const TriangleMesh& mesh_;
   const CurvedSurface& surface_;
   const BallSweep& sweep_;
   double spacing_;
   std::vector<BallSweep::Segment> near_;
 };
 
-void find_cusps(const CurvedSurface& surface, const BallSweep& sweep, const std::vector<Move>& moves, double spacing,
-                const Progress& progress, ScallopReport& report) {
+void find_cusps(const TriangleMesh& mesh, const CurvedSurface& surface, const BallSweep& sweep,
+                const std::vector<Move>& moves, double spacing, const Progress& progress, ScallopReport& report) {
   std::vector<double> arc(1, 0.0);
   for (const Move& move : moves) arc.push_back(arc.back() + move.length);
   const auto count = std::clamp(static_cast<std::size_t>(std::min(1e9, arc.back() / (sample_in_spacings * spacing))),
@@ -263,7 +232,7 @@ void find_cusps(const CurvedSurface& surface, const BallSweep& sweep, const std:
     const double at = arc.back() * (static_cast<double>(k) + jitter) / static_cast<double>(count);
     const auto past = std::upper_bound(arc.begin(), arc.end() - 1, at);
     const auto i = static_cast<std::size_t>(past - arc.begin()) - 1;
-    CuspFinder finder(surface, sweep, spacing);
+    CuspFinder finder(mesh, surface, sweep, spacing);
     for (const bool left : {false, true}) {
       found[2 * k + left] = finder.beside(moves[i], std::clamp((at - arc[i]) / moves[i].length, 0.0, 1.0), left);
     }
@@ -317,23 +286,21 @@ double scallop_pitch(double height, double ball_radius) {
   return std::sqrt(8 * height * ball_radius);
 }
 
-ScallopReport measure_scallop(const TriangleMesh& mesh, const ImpactCurve& curve, double ball_radius, double spacing,
-                              Progress& progress) {
+ScallopReport measure_scallop(const TriangleMesh& mesh, const CurvedSurface& surface, const ImpactCurve& curve,
+                              double ball_radius, double spacing, Progress& progress) {
   require_length("ball_radius", ball_radius);
   require_length("spacing", spacing);
   progress.stage("scallop");
-  const CurvedSurface surface(mesh);
   const std::vector<Move> moves = covering_moves(mesh, curve);
   if (moves.empty()) throw Error(ErrorCode::no_plan, "the curve covers nothing");
-  const BallSweep sweep(centre_segments(surface, moves, ball_radius, spacing), ball_radius, spacing);
+  const BallSweep sweep(centre_segments(mesh, surface, moves, ball_radius, spacing), ball_radius, spacing);
   ScallopReport report;
-  find_cusps(surface, sweep, moves, spacing, progress, report);
+  find_cusps(mesh, surface, sweep, moves, spacing, progress, report);
   report.vertex_height.assign(mesh.n_vertices(), infinity);
   tbb::parallel_for(Index{0}, mesh.n_vertices(), [&](Index v) {
     if (mesh.outgoing(v) == no_index) return;
     progress.checkpoint();
-    const SurfacePoint at = point_at_vertex(mesh, v);
-    const CurvedSurface::Point point = surface.at(at.face, at.barycentric);
+    const CurvedSurface::Point point = surface.at(point_at_vertex(mesh, v));
     std::vector<BallSweep::Segment> near;
     for (const double sight : vertex_sights) {
       if (report.vertex_height[v] < infinity) continue;
@@ -342,6 +309,11 @@ ScallopReport measure_scallop(const TriangleMesh& mesh, const ImpactCurve& curve
     }
   });
   return report;
+}
+
+ScallopReport measure_scallop(const TriangleMesh& mesh, const ImpactCurve& curve, double ball_radius, double spacing,
+                              Progress& progress) {
+  return measure_scallop(mesh, CurvedSurface(mesh), curve, ball_radius, spacing, progress);
 }
 
 }  // namespace isopath

@@ -4,6 +4,8 @@
 
 #include "isopath/core/progress.h"
 #include "isopath/impact/impact_curve.h"
+#include "isopath/mesh/curved_surface.h"
+#include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
 
@@ -39,11 +41,12 @@ struct ScallopReport {
 /// along p + R n, and what lies in none of the balls is left. From points along every pass, heights are followed
 /// straight across it to either side until they come down on the other side of a cusp.
 ///
-/// The surface between the vertices is taken as curved the way its normals say (Boubekeur & Alexa 2008), exact to
-/// fourth order in the edges, so that facets do not count as cusps. Only passes within six spacings of each other are
-/// seen; links and lifts count as not cutting.
-/// Throws Error(bad_usage) unless both lengths (mm) are positive, Error(no_plan) when the curve covers nothing,
-/// Error(cancelled) on request.
+/// The surface is the curved one over the mesh, so that facets do not count as cusps. Only passes within six spacings
+/// of each other are seen; links and lifts count as not cutting. Throws Error(bad_usage) unless both lengths (mm) are
+/// positive, Error(no_plan) when the curve covers nothing, Error(cancelled) on request.
+ScallopReport measure_scallop(const TriangleMesh& mesh, const CurvedSurface& surface, const ImpactCurve& curve,
+                              double ball_radius, double spacing, Progress& progress = Progress::none());
+/// On the surface that is fitted to this mesh: not for meshes with split faces, whose parts are flat.
 ScallopReport measure_scallop(const TriangleMesh& mesh, const ImpactCurve& curve, double ball_radius, double spacing,
                               Progress& progress = Progress::none());
 
