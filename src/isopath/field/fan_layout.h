@@ -58,6 +58,9 @@ class FanLayout {
     bool bends_sharply;
   };
 
+  std::uint32_t find_ends(const TriangleMesh& mesh, Index vertex, std::uint32_t n_spokes);
+  void close(Index vertex, const float* angles);
+
   double unit_ = 1;
   std::size_t most_spokes_ = 0;
   LargeVector<Head> heads_;

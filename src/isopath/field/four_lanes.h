@@ -44,26 +44,46 @@ struct FourRecords {
   Floats fourth;
 };
 
+/// Four words from memory.
+template <typename Record>
+Floats words_at(const Record* at) {
+  static_assert(sizeof(Floats) % sizeof(Record) == 0);
+  Floats words;
+  std::memcpy(&words, at, sizeof(words));
+  return words;
+}
 template <typename Record>
 Floats words_of(const Record& record) {
   static_assert(sizeof(Record) == sizeof(Floats));
-  Floats words;
-  std::memcpy(&words, &record, sizeof(words));
-  return words;
+  return words_at(&record);
 }
 
 template <typename Record>
-FourRecords records(const Record* at) {
-  const Floats a = words_of(at[0]);
-  const Floats b = words_of(at[1]);
-  const Floats c = words_of(at[2]);
-  const Floats d = words_of(at[3]);
+void put_words(Floats words, Record* at) {
+  static_assert(sizeof(words) % sizeof(Record) == 0);
+  std::memcpy(at, &words, sizeof(words));
+}
+
+/// Rows of four vectors as columns.
+inline FourRecords transposed(Floats a, Floats b, Floats c, Floats d) {
   const Floats ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
   const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
   const Floats cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
   const Floats cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
   return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
           __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5), __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+}
+
+template <typename Record>
+FourRecords records(const Record* at) {
+  return transposed(words_of(at[0]), words_of(at[1]), words_of(at[2]), words_of(at[3]));
+}
+
+template <typename Record>
+void put_records(const FourRecords& words, Record* at) {
+  static_assert(sizeof(Record) == sizeof(Floats));
+  const FourRecords rows = transposed(words.first, words.second, words.third, words.fourth);
+  std::memcpy(at, &rows, sizeof(rows));
 }
 
 }  // namespace isopath
