@@ -63,12 +63,8 @@ struct Ways {
   Floats length;
   Floats end;
 
-  explicit Ways(const FourRecords& ways)
-      : x(ways.first),
-        y(ways.second),
-        z(ways.third),
-        length(square_root(x * x + y * y + z * z)),
-        end(ways.fourth) {}
+  Ways(const FourRecords& ways, Floats squared_length)
+      : x(ways.first), y(ways.second), z(ways.third), length(square_root(squared_length)), end(ways.fourth) {}
 };
 
 /// The last three lanes of four, and the first of the next four.
@@ -78,11 +74,12 @@ Floats moved_on(Floats here, Floats next) {
 }
 
 /// Turns spokes that hold the way from the middle to their end in place of length, cosine and sine into what they are
-/// to be, but for the last of each fan, and puts the angle beside each. Goes on past n to a multiple of four.
-void finish(FanSpoke* spokes, std::size_t n, float* angles) {
-  Ways here(records(spokes));
+/// to be, but for the last of each fan. Beside each of them is the square of its length, and after that its angle. Goes
+/// on past n to a multiple of four.
+void finish(FanSpoke* spokes, std::size_t n, float* beside) {
+  Ways here(records(spokes), words_at(beside));
   for (std::size_t i = 0; i < n; i += read_at_once) {
-    const Ways next(records(spokes + i + read_at_once));
+    const Ways next(records(spokes + i + read_at_once), words_at(beside + i + read_at_once));
     const Floats x = moved_on(here.x, next.x);
     const Floats y = moved_on(here.y, next.y);
     const Floats z = moved_on(here.z, next.z);
@@ -95,10 +92,10 @@ void finish(FanSpoke* spokes, std::size_t n, float* angles) {
     const Floats cosine = is_face ? inverse * (here.x * x + here.y * y + here.z * z) : all(1);
     const Floats sine = inverse * square_root(cross_x * cross_x + cross_y * cross_y + cross_z * cross_z);
     put_records({here.end, here.length, cosine, sine}, spokes + i);
-    put_words(cosine, angles + i);
+    put_words(cosine, beside + i);
     here = next;
   }
-  for (std::size_t i = 0; i < n; i += read_at_once) put_words(angle_of(words_at(angles + i)), angles + i);
+  for (std::size_t i = 0; i < n; i += read_at_once) put_words(angle_of(words_at(beside + i)), beside + i);
 }
 
 }  // namespace
@@ -109,23 +106,27 @@ FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(me
                  2 * read_at_once);
   // Block by block, first the ends, then the angles, last the sums: each is a short loop with nothing to wait for.
   constexpr Index block = 128;
-  std::vector<float> angles;
+  std::vector<float> beside(16 * block);
   std::uint32_t n_spokes = 0;
   for (Index first = 0; first < mesh.n_vertices(); first += block) {
     const Index last = std::min(mesh.n_vertices(), first + block);
     const std::uint32_t before = n_spokes;
-    for (Index v = first; v < last; ++v) n_spokes = find_ends(mesh, v, n_spokes);
+    for (Index v = first; v < last; ++v) {
+      n_spokes = find_ends(mesh, v, n_spokes, n_spokes - before, beside);
+    }
     heads_[last] = {n_spokes, false, false, false};
     std::fill_n(spokes_.begin() + n_spokes, 2 * read_at_once, FanSpoke{});
-    angles.resize(std::max<std::size_t>(angles.size(), n_spokes - before + read_at_once));
-    finish(spokes_.data() + before, n_spokes - before, angles.data());
-    for (Index v = first; v < last; ++v) close(v, angles.data() - before);
+    beside.resize(std::max<std::size_t>(beside.size(), n_spokes - before + 2 * read_at_once));
+    finish(spokes_.data() + before, n_spokes - before, beside.data());
+    for (Index v = first; v < last; ++v) close(v, beside.data() + (heads_[v].first - before));
   }
   std::fill(spokes_.begin() + n_spokes, spokes_.end(), FanSpoke{});
 }
 
-/// Appends the ways from a vertex to its neighbours, in place of spokes, in single precision.
-std::uint32_t FanLayout::find_ends(const TriangleMesh& mesh, Index vertex, std::uint32_t n_spokes) {
+/// Appends the ways from a vertex to its neighbours, in place of spokes, in single precision. Beside them go the
+/// squares of their lengths, which these could tell with more rounding only.
+std::uint32_t FanLayout::find_ends(const TriangleMesh& mesh, Index vertex, std::uint32_t n_spokes, std::size_t n_beside,
+                                   std::vector<float>& beside) {
   heads_[vertex] = {n_spokes, false, false, false};
   const Index start = mesh.outgoing(vertex);
   if (start == no_index) return n_spokes;
@@ -137,6 +138,8 @@ std::uint32_t FanLayout::find_ends(const TriangleMesh& mesh, Index vertex, std::
   FanSpoke* spoke = spokes_.data() + n_spokes;
   const auto add = [&](std::uint32_t end) {
     const Vec3 way = scale * (positions[end] - middle);
+    if (n_beside == beside.size()) beside.resize(2 * n_beside);
+    beside[n_beside++] = static_cast<float>(way.squaredNorm());
     put_words(single_precision(way, end), spoke++);
   };
   add(static_cast<std::uint32_t>(mesh.to(start)));
@@ -158,7 +161,7 @@ void FanLayout::close(Index vertex, const float* angles) {
   FanSpoke& last = spokes_[end - 1];
   last = head.closed ? spokes_[head.first] : FanSpoke{last.end, last.length, 1, 0};
   float sum = head.closed ? -2 * std::numbers::pi_v<float> : -std::numbers::pi_v<float>;
-  for (std::uint32_t i = head.first; i + 1 < end; ++i) sum += angles[i];
+  for (std::uint32_t i = 0; head.first + i + 1 < end; ++i) sum += angles[i];
   head.bends = sum > slight_saddle;
   head.bends_sharply = sum > sharp_saddle;
   most_spokes_ = std::max<std::size_t>(most_spokes_, end - head.first);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "isopath/field/large_pages.h"
 #include "isopath/mesh/triangle_mesh.h"
@@ -58,7 +59,8 @@ class FanLayout {
     bool bends_sharply;
   };
 
-  std::uint32_t find_ends(const TriangleMesh& mesh, Index vertex, std::uint32_t n_spokes);
+  std::uint32_t find_ends(const TriangleMesh& mesh, Index vertex, std::uint32_t n_spokes, std::size_t n_beside,
+                          std::vector<float>& beside);
   void close(Index vertex, const float* angles);
 
   double unit_ = 1;

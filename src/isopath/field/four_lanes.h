@@ -61,7 +61,7 @@ Floats words_of(const Record& record) {
 template <typename Record>
 void put_words(Floats words, Record* at) {
   static_assert(sizeof(words) % sizeof(Record) == 0);
-  std::memcpy(at, &words, sizeof(words));
+  std::memcpy(static_cast<void*>(at), &words, sizeof(words));
 }
 
 /// Rows of four vectors as columns.
@@ -83,7 +83,7 @@ template <typename Record>
 void put_records(const FourRecords& words, Record* at) {
   static_assert(sizeof(Record) == sizeof(Floats));
   const FourRecords rows = transposed(words.first, words.second, words.third, words.fourth);
-  std::memcpy(at, &rows, sizeof(rows));
+  std::memcpy(static_cast<void*>(at), &rows, sizeof(rows));
 }
 
 }  // namespace isopath

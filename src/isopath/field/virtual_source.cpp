@@ -248,7 +248,7 @@ class Propagation {
   if ((held.root & is_settled) != 0) before = was_settled;
   const bool waits = held.distance < std::numeric_limits<float>::infinity() && (held.root & is_settled) == 0 &&
                      queue_.same_bucket(arrival.distance, held.distance);
-  held = {arrival.distance, arrival.bent, arrival.source, arrival.root | before};
+  put_words(words_of(Arrival{arrival.distance, arrival.bent, arrival.source, arrival.root | before}), &held);
   if (!waits) queue_.push(arrival.distance, vertex);
 }
 
@@ -257,8 +257,8 @@ class Propagation {
 void Propagation::settle(std::uint32_t vertex) {
   Arrival& own = arrivals_[vertex];
   if ((own.root & is_settled) != 0) return;
-  own.root |= is_settled;
-  const Arrival here = own;
+  const Arrival here{own.distance, own.bent, own.source, own.root | is_settled};
+  own.root = here.root;
   const FanLayout::Fan fan = fans_.fan(vertex);
   const std::size_t n = fan.spokes.size();
   if (n == 0) return;
