@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "isopath/core/error.h"
 #include "isopath/field/checked_distances.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/fan_layout.h"
 #include "isopath/field/graph_field.h"
 #include "isopath/mesh/read_mesh.h"
 #include "support/random_sources.h"
@@ -54,6 +56,54 @@ RelativeErrors errors_of(const std::vector<double>& distance, std::span<const do
 RelativeErrors errors_against_exact(const TriangleMesh& mesh, const SourceSet& sources) {
   const ExactField exact = ExactField::compute(mesh, sources, {.accuracy = 1e-7 * mesh.size()});
   return errors_of(virtual_source_distances(mesh, sources), exact.vertex_distances());
+}
+
+TEST(FanLayout, HoldsTheFacesAroundEveryVertex) {
+  constexpr float single = 1e-6F;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = random_case(seed).mesh;
+    const FanLayout fans(mesh);
+    for (Index v = 0; v < mesh.n_vertices(); ++v) {
+      const FanLayout::Fan fan = fans.fan(static_cast<std::uint32_t>(v));
+      const Index start = mesh.outgoing(v);
+      double sum = 0;
+      std::size_t i = 0;
+      for (Index h = start; h != no_index;) {
+        ASSERT_LT(i + 1, fan.spokes.size());
+        const FanSpoke& spoke = fan.spokes[i];
+        const Vec3 along = mesh.position(mesh.to(h)) - mesh.position(v);
+        const Vec3 next = mesh.position(mesh.from(TriangleMesh::prev(h))) - mesh.position(v);
+        const double product = along.norm() * next.norm();
+        EXPECT_EQ(spoke.end, static_cast<std::uint32_t>(mesh.to(h)));
+        EXPECT_EQ(fan.spokes[i + 1].end, static_cast<std::uint32_t>(mesh.from(TriangleMesh::prev(h))));
+        EXPECT_FLOAT_EQ(spoke.length, static_cast<float>(along.norm() / fans.unit()));
+        EXPECT_NEAR(spoke.cosine, along.dot(next) / product, single);
+        EXPECT_NEAR(spoke.sine, along.cross(next).norm() / product, single);
+        sum += std::atan2(along.cross(next).norm(), along.dot(next));
+        ++i;
+        h = mesh.next_outgoing(h);
+        if (h == start) break;
+      }
+      if (start == no_index) {
+        EXPECT_TRUE(fan.spokes.empty());
+        continue;
+      }
+      ASSERT_EQ(fan.spokes.size(), i + 1);  // a closed fan ends with its first spoke, an open one with its last edge
+      const FanSpoke& first = fan.spokes.front();
+      const FanSpoke& last = fan.spokes.back();
+      if (fan.closed) {
+        EXPECT_EQ(std::tie(last.end, last.cosine), std::tie(first.end, first.cosine));
+      }
+      EXPECT_EQ(fan.closed, !mesh.is_boundary_vertex(v));
+      const double excess = sum - (fan.closed ? 2 : 1) * std::numbers::pi;
+      const auto is_told = [&](bool told, double limit) {
+        return told == (excess > limit) || std::abs(excess - limit) < 1e-3;
+      };
+      EXPECT_TRUE(is_told(fan.bends, 0.03)) << excess;
+      EXPECT_TRUE(is_told(fan.bends_sharply, 0.5)) << excess;
+    }
+  }
 }
 
 TEST(VirtualSource, IsNeverTooShortAndAlmostAlwaysExactFromAPointOnAConvexPlane) {

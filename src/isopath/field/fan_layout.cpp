@@ -110,15 +110,15 @@ FanLayout::FanLayout(const TriangleMesh& mesh) : unit_(unit_of(mesh)), heads_(me
   std::uint32_t n_spokes = 0;
   for (Index first = 0; first < mesh.n_vertices(); first += block) {
     const Index last = std::min(mesh.n_vertices(), first + block);
-    const std::uint32_t before = n_spokes;
+    const std::uint32_t first_spoke = n_spokes;
     for (Index v = first; v < last; ++v) {
-      n_spokes = find_ends(mesh, v, n_spokes, n_spokes - before, beside);
+      n_spokes = find_ends(mesh, v, n_spokes, n_spokes - first_spoke, beside);
     }
     heads_[last] = {n_spokes, false, false, false};
     std::fill_n(spokes_.begin() + n_spokes, 2 * read_at_once, FanSpoke{});
-    beside.resize(std::max<std::size_t>(beside.size(), n_spokes - before + 2 * read_at_once));
-    finish(spokes_.data() + before, n_spokes - before, beside.data());
-    for (Index v = first; v < last; ++v) close(v, beside.data() + (heads_[v].first - before));
+    beside.resize(std::max<std::size_t>(beside.size(), n_spokes - first_spoke + 2 * read_at_once));
+    finish(spokes_.data() + first_spoke, n_spokes - first_spoke, beside.data());
+    for (Index v = first; v < last; ++v) close(v, beside.data() + (heads_[v].first - first_spoke));
   }
   std::fill(spokes_.begin() + n_spokes, spokes_.end(), FanSpoke{});
 }
@@ -130,7 +130,7 @@ std::uint32_t FanLayout::find_ends(const TriangleMesh& mesh, Index vertex, std::
   heads_[vertex] = {n_spokes, false, false, false};
   const Index start = mesh.outgoing(vertex);
   if (start == no_index) return n_spokes;
-  static_assert(sizeof(Triangle) == 3 * sizeof(Index));
+  static_assert(sizeof(Triangle) == 3 * sizeof(Index));  // half-edge h starts at corner h of all
   const Index* const corners = mesh.soup().triangles.front().data();
   const Vec3* const positions = mesh.soup().positions.data();
   const Vec3 middle = positions[vertex];
