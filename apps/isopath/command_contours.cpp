@@ -15,6 +15,7 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/mesh/write_vtp.h"
 #include "isopath/plan/make_sources.h"
+#include "picture.h"
 #include "shared_options.h"
 
 namespace isopath::app {
@@ -24,6 +25,7 @@ struct ContoursArguments {
   MeshInput input;
   double spacing = 0;
   std::string output;
+  std::string report;
 };
 
 using Json = nlohmann::ordered_json;
@@ -102,9 +104,39 @@ Json summary_json(const TriangleMesh& mesh, const std::vector<double>& levels, c
           {"length", length},        {"runs", graph.runs.size()}};
 }
 
+ReportTable figures_of(const Json& summary) {
+  const auto count = [&](const char* name) { return fmt::format("{}", summary.at(name).get<std::size_t>()); };
+  return {"Contours",
+          {{"levels", count("levels")},
+           {"closed", count("closed")},
+           {"open", count("open")},
+           {"length", fmt::format("{:.6g}", summary.at("length").get<double>()), "mm"},
+           {"runs", count("runs"), "", "Stacks of contours with one neighbour on either side."}}};
+}
+
+/// The contours as a report shows them.
+Picture picture_of(const ContoursArguments& arguments, const TriangleMesh& mesh, const std::vector<Contour>& contours,
+                   const Json& summary) {
+  Picture picture{.mesh_file = arguments.input.mesh,
+                  .what = fmt::format("lines of equal distance, {:g} mm apart", arguments.spacing),
+                  .lines_name = "Contours",
+                  .figures = figures_of(summary)};
+  for (const Contour& contour : contours) {
+    ReportIsoline& line = picture.lines.emplace_back();
+    line.closed = contour.closed;
+    line.level = contour.level;
+    for (const SurfacePoint& point : contour.points) line.points.push_back(position_of(mesh, point));
+  }
+  return picture;
+}
+
 void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) {
   const std::string extension = extension_of(arguments.output);
-  if (extension != ".vtp" && extension != ".json") {
+  check_report(arguments.report);
+  if (arguments.output.empty() && arguments.report.empty()) {
+    throw Error(ErrorCode::bad_usage, "nothing to do: neither -o nor --report is given");
+  }
+  if (!arguments.output.empty() && extension != ".vtp" && extension != ".json") {
     refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .json");
   }
   ConsoleProgress progress(flags.quiet);
@@ -118,12 +150,20 @@ void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) 
   progress.checkpoint();
   if (extension == ".json") {
     write_file_atomically(arguments.output, contours_json(part.mesh, contours, graph).dump() + "\n");
-  } else {
+  } else if (extension == ".vtp") {
     write_vtp(arguments.output, contours_vtp(part.mesh, contours, graph));
   }
-  if (!flags.json) return;
   Json report = summary_json(part.mesh, levels, contours, graph);
+  if (!arguments.report.empty()) {
+    write_picture(arguments.report, part, field, picture_of(arguments, part.mesh, contours, report), progress);
+  }
+  if (!flags.json) {
+    return print(fmt::format("{} contours at {} levels, {} of them closed\nlength {:.6g} mm\n{}", contours.size(),
+                             levels.size(), report["closed"].get<std::size_t>(), report["length"].get<double>(),
+                             written_to(arguments.output, arguments.report)));
+  }
   report["output"] = arguments.output;
+  if (!arguments.report.empty()) report["report"] = arguments.report;
   report["warnings"] = part.warnings;
   print_json(report);
 }
@@ -141,11 +181,13 @@ void add_contours(CLI::App& app, CommonFlags& flags, Action& action) {
       ->required();
   command
       ->add_option("-o,--output", arguments->output, ".vtp: polylines with level and run; .json: points and the graph")
-      ->required();
+      ->check(not_empty());
+  add_report(*command, arguments->report);
   add_common_flags(*command, flags);
   command->footer(
       "Examples:\n"
       "  isopath contours part.stl --source boundary --spacing 2 -o lines.vtp\n"
+      "  isopath contours part.stl --source boundary --spacing 2 --report lines.html\n"
       "  isopath contours part.stl --source edges:40 --spacing 5 -o lines.json --json\n\n" +
       source_help());
   command->callback(

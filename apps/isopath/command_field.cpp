@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "isopath/contour/isolines.h"
 #include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
 #include "isopath/field/checked_distances.h"
@@ -20,10 +21,12 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/field/fast_marching.h"
 #include "isopath/field/graph_field.h"
+#include "isopath/field/vertex_field.h"
 #include "isopath/field/virtual_source.h"
 #include "isopath/mesh/write_mesh.h"
 #include "isopath/mesh/write_vtp.h"
 #include "isopath/plan/make_sources.h"
+#include "picture.h"
 #include "shared_options.h"
 
 namespace isopath::app {
@@ -35,6 +38,7 @@ struct FieldArguments {
   std::optional<double> max_error;
   std::string output;
   std::string path_to;
+  std::string report;
 };
 
 /// One value a line in the vertex order of the file; `inf` where no source reaches.
@@ -101,6 +105,35 @@ nlohmann::ordered_json way_json(const Way& way) {
   return {{"length", way.distances.front()}, {"points", std::move(points)}};
 }
 
+/// Lines between the colours: so many levels.
+constexpr int levels_shown = 20;
+
+Picture picture_of(const FieldArguments& arguments, const Part& part, std::span<const double> distances, double largest,
+                   const Way& way) {
+  Picture picture{
+      .mesh_file = arguments.input.mesh,
+      .what = "distance on the surface from the sources",
+      .lines_name = way.points.empty() ? "Isolines" : "Shortest path",
+      .figures = {"Field", {{"method", arguments.method}, {"largest distance", fmt::format("{:.6g}", largest), "mm"}}}};
+  if (!way.points.empty()) {
+    picture.figures.rows.push_back({"shortest path", fmt::format("{:.6g}", way.distances.front()), "mm"});
+    picture.lines.push_back({.points = way.points});
+    return picture;
+  }
+  const bool everywhere = std::all_of(distances.begin(), distances.end(), [](double d) { return d < infinity; });
+  if (!everywhere || !(largest > 0)) return picture;
+  std::vector<double> levels;
+  for (int k = 1; k < levels_shown; ++k) levels.push_back(largest * k / levels_shown);
+  const VertexField field(part.mesh, {distances.begin(), distances.end()});
+  for (const Contour& contour : isolines(part.mesh, field, levels)) {
+    ReportIsoline& line = picture.lines.emplace_back();
+    line.closed = contour.closed;
+    line.level = contour.level;
+    for (const SurfacePoint& point : contour.points) line.points.push_back(position_of(part.mesh, point));
+  }
+  return picture;
+}
+
 void check(const FieldArguments& arguments) {
   constexpr std::array methods{"exact", "virtual-source", "fast-marching", "graph"};
   if (std::find(methods.begin(), methods.end(), arguments.method) == methods.end()) {
@@ -117,8 +150,9 @@ void check(const FieldArguments& arguments) {
   if (!arguments.output.empty() && extension != ".csv" && extension != ".ply" && extension != ".vtp") {
     refuse_value("option -o", arguments.output, "a file name that ends in .csv, .ply or .vtp");
   }
-  if (arguments.output.empty() && arguments.path_to.empty()) {
-    throw Error(ErrorCode::bad_usage, "nothing to do: neither -o nor --path-to is given");
+  check_report(arguments.report);
+  if (arguments.output.empty() && arguments.path_to.empty() && arguments.report.empty()) {
+    throw Error(ErrorCode::bad_usage, "nothing to do: none of -o, --path-to and --report is given");
   }
 }
 
@@ -160,14 +194,17 @@ void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
   const Way& way = found.way;
   progress.checkpoint();
   if (!arguments.output.empty()) write_field(arguments.output, part, distances, way);
-  if (!flags.json && !way.points.empty()) return print(way_text(way));  // the points alone, for other programs
-
   double largest = 0;
   for (const double d : distances) largest = d < infinity ? std::max(largest, d) : largest;
+  if (!arguments.report.empty()) {
+    write_picture(arguments.report, part, distances, picture_of(arguments, part, distances, largest, way));
+  }
+  if (!flags.json && !way.points.empty()) return print(way_text(way));  // the points alone, for other programs
+
   const auto unreached = std::count(distances.begin(), distances.end(), infinity);
   if (!flags.json) {
-    return print(fmt::format("distances at {} vertices, up to {:.6g} mm; {} not reached\nwritten to {}\n",
-                             distances.size(), largest, unreached, arguments.output));
+    return print(fmt::format("distances at {} vertices, up to {:.6g} mm; {} not reached\n{}", distances.size(), largest,
+                             unreached, written_to(arguments.output, arguments.report)));
   }
   nlohmann::ordered_json report = {{"vertices", part.vertex_of_file_vertex.size()},
                                    {"triangles", part.mesh.n_faces()},
@@ -176,6 +213,7 @@ void run_field(const FieldArguments& arguments, const CommonFlags& flags) {
                                    {"unreached_vertices", unreached},
                                    {"output", arguments.output},
                                    {"warnings", part.warnings}};
+  if (!arguments.report.empty()) report["report"] = arguments.report;
   if (!found.check.is_null()) report["check"] = found.check;
   if (!way.points.empty()) report["path"] = way_json(way);
   print_json(report);
@@ -208,10 +246,12 @@ void add_field(CLI::App& app, CommonFlags& flags, Action& action) {
   command->add_option(
       "--path-to", arguments->path_to,
       "Trace the shortest path from point:X,Y,Z or vertex:I back to the sources; printed as x,y,z lines");
+  add_report(*command, arguments->report);
   add_common_flags(*command, flags);
   command->footer(
       "Examples:\n"
       "  isopath field part.stl --source boundary -o distance.vtp\n"
+      "  isopath field part.stl --source boundary --report distance.html\n"
       "  isopath field part.off --source vertex:12 --source point:3,4,5 -o distance.csv\n"
       "  isopath field part.ply --source plane:0,0,1,20 --path-to vertex:900 > path.csv\n\n" +
       source_help());

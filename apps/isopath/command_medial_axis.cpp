@@ -17,6 +17,7 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/mesh/write_vtp.h"
 #include "isopath/plan/make_sources.h"
+#include "picture.h"
 #include "shared_options.h"
 
 namespace isopath::app {
@@ -28,6 +29,7 @@ struct MedialAxisArguments {
   double min_angle = MedialAxisOptions().min_angle * 180 / std::numbers::pi;
   double prune = MedialAxisOptions().prune;
   std::string output;
+  std::string report;
 };
 
 using Json = nlohmann::ordered_json;
@@ -86,9 +88,36 @@ Json summary_json(const TriangleMesh& mesh, const BisectorGraph& graph) {
           {"max_clearance", clearance}};
 }
 
+/// The axis as a report shows it.
+Picture picture_of(const MedialAxisArguments& arguments, const TriangleMesh& mesh, const BisectorGraph& graph,
+                   const Json& summary) {
+  const auto count = [&](const char* name) { return fmt::format("{}", summary.at(name).get<std::size_t>()); };
+  const auto length = [&](const char* name) { return fmt::format("{:.6g}", summary.at(name).get<double>()); };
+  const char* name = arguments.voronoi ? "Voronoi diagram" : "Medial axis";
+  Picture picture{.mesh_file = arguments.input.mesh,
+                  .what = arguments.voronoi ? "Voronoi diagram of the sources" : "medial axis of the sources",
+                  .lines_name = name,
+                  .figures = {name,
+                              {{"arcs", count("arcs")},
+                               {"nodes", count("nodes")},
+                               {"free ends", count("leaves")},
+                               {"length", length("length"), "mm"},
+                               {"largest clearance", length("max_clearance"), "mm",
+                                "Distance of the axis from the sources, at most."}}}};
+  for (const BisectorGraph::Arc& arc : graph.arcs) {
+    ReportIsoline& line = picture.lines.emplace_back();
+    for (const BisectorPoint& point : arc.points) line.points.push_back(position_of(mesh, point.point));
+  }
+  return picture;
+}
+
 void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& flags) {
   const std::string extension = extension_of(arguments.output);
-  if (extension != ".vtp" && extension != ".csv") {
+  check_report(arguments.report);
+  if (arguments.output.empty() && arguments.report.empty()) {
+    throw Error(ErrorCode::bad_usage, "nothing to do: neither -o nor --report is given");
+  }
+  if (!arguments.output.empty() && extension != ".vtp" && extension != ".csv") {
     refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .csv");
   }
   if (arguments.min_angle > 180)
@@ -106,18 +135,22 @@ void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& fl
   progress.checkpoint();
   if (extension == ".csv") {
     write_file_atomically(arguments.output, graph_csv(part.mesh, graph));
-  } else {
+  } else if (extension == ".vtp") {
     write_vtp(arguments.output, graph_vtp(part.mesh, graph));
   }
   Json report = summary_json(part.mesh, graph);
+  if (!arguments.report.empty()) {
+    write_picture(arguments.report, part, field, picture_of(arguments, part.mesh, graph, report), progress);
+  }
   if (!flags.json) {
-    return print(
-        fmt::format("{} arcs, {} nodes, {} of them free ends\nlength {:.6g} mm, up to {:.6g} mm from the sources\n"
-                    "written to {}\n",
-                    graph.arcs.size(), graph.nodes.size(), report["leaves"].get<std::size_t>(),
-                    report["length"].get<double>(), report["max_clearance"].get<double>(), arguments.output));
+    return print(fmt::format(
+        "{} arcs, {} nodes, {} of them free ends\nlength {:.6g} mm, up to {:.6g} mm from the sources\n"
+        "{}",
+        graph.arcs.size(), graph.nodes.size(), report["leaves"].get<std::size_t>(), report["length"].get<double>(),
+        report["max_clearance"].get<double>(), written_to(arguments.output, arguments.report)));
   }
   report["output"] = arguments.output;
+  if (!arguments.report.empty()) report["report"] = arguments.report;
   report["warnings"] = part.warnings;
   print_json(report);
 }
@@ -147,12 +180,14 @@ void add_medial_axis(CLI::App& app, CommonFlags& flags, Action& action) {
   command
       ->add_option("-o,--output", arguments->output,
                    ".vtp: polylines with clearance, angle and roots; .csv: the same, one point a line")
-      ->required();
+      ->check(not_empty());
+  add_report(*command, arguments->report);
   add_common_flags(*command, flags);
   command->footer(
       "Examples:\n"
       "  isopath medial-axis part.stl --source boundary -o axis.vtp\n"
       "  isopath medial-axis part.stl --source boundary --prune 1.5 -o axis.csv --json\n"
+      "  isopath medial-axis part.stl --source boundary --prune 1.5 --report axis.html\n"
       "  isopath medial-axis part.stl --source vertex:12,400,731 --voronoi -o cells.vtp\n\n" +
       source_help());
   command->callback(

@@ -17,6 +17,10 @@ std::string failure_message(const CLI::App* app, const CLI::Error& error) {
   if (app->get_subcommands().empty() && !unknown.empty()) {
     return fmt::format("isopath: error: there is no command '{}'\n  'isopath --help' lists them\n", unknown.front());
   }
+  if (app->get_subcommands().empty() && dynamic_cast<const CLI::RequiredError*>(&error)) {
+    return "isopath: error: no command was given\n  'isopath --help' lists them; start with 'isopath plan part.stl -o "
+           "out'\n";
+  }
   std::string command = "isopath";
   for (const CLI::App* parsed : app->get_subcommands()) command += " " + parsed->get_name();
   for (const std::string& argument : app->remaining(true)) {

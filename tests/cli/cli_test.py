@@ -8,6 +8,7 @@ stretched by it, and parts that only serve to keep the program busy are made sma
 import json
 import math
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -207,6 +208,47 @@ class Contours(Program):
         out = self.path("lines.vtp")
         self.assert_refused(run("contours", self.plane, "--spacing", 0, "-o", out), USAGE, "--spacing", "above 0")
         self.assert_refused(run("contours", self.plane, "--spacing", 1e-9, "-o", out), USAGE, "--spacing", "or more")
+
+
+class Pictures(Program):
+    """--report of the commands that compute something to look at."""
+
+    def report_of(self, *arguments):
+        out = self.path("picture.html")
+        result = run(*arguments, "--source", "boundary", "--report", out, "--json")
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["report"], str(out))
+        page = self.read(out).decode()
+        return json.loads(re.search(r'<script[^>]*id="meta"[^>]*>(.*?)</script>', page, re.S).group(1))
+
+    def test_of_contours(self):
+        meta = self.report_of("contours", self.plane, "--spacing", 8)
+        self.assertEqual(meta["isolines_name"], "Contours")
+        self.assertEqual([(line["level"], line["closed"]) for line in meta["isolines"]], [(8, True), (16, True)])
+
+    def test_of_a_medial_axis(self):
+        meta = self.report_of("medial-axis", self.plane)
+        self.assertEqual((meta["isolines_name"], len(meta["isolines"])), ("Medial axis", 5))
+
+    def test_of_a_field(self):
+        meta = self.report_of("field", self.plane)
+        self.assertEqual((meta["isolines_name"], len({line["level"] for line in meta["isolines"]})), ("Isolines", 19))
+        meta = self.report_of("field", self.plane, "--path-to", "point:40,25,0")
+        self.assertEqual((meta["isolines_name"], len(meta["isolines"])), ("Shortest path", 1))
+
+    def test_data_and_picture_come_together(self):
+        out = self.path("axis.csv")
+        result = run("medial-axis", self.plane, "-o", out, "--report", self.path("axis.html"))
+        self.assertEqual(result.returncode, OK, result.stderr)
+        self.assertIn("axis.csv", result.stdout)
+        self.assertIn("axis.html", result.stdout)
+        self.assertTrue(self.read(out))
+
+    def test_a_picture_is_a_page_and_something_is_asked_for(self):
+        for command in (["field"], ["medial-axis"], ["contours", "--spacing", 5]):
+            arguments = [command[0], self.plane, *command[1:]]
+            self.assert_refused(run(*arguments, "--report", "axis.png"), USAGE, "--report", ".html")
+            self.assert_refused(run(*arguments), USAGE, "nothing to do", "--report")
 
 
 class MedialAxis(Program):

@@ -13,15 +13,15 @@ export class Model {
     this.surface = new Surface(report);
     view.scene.add(this.surface.group);
     this.layers = { edges: { label: 'Edges', key: 'e', shown: true, objects: [this.surface.edges] } };
-    if (report.isolines.length) this.addIsolines(report.isolines);
+    if (report.isolines.length) this.addIsolines(report.isolines, report.meta.isolines_name);
     if (path) this.addPath(report.meta.area);
   }
 
-  addIsolines(isolines) {
+  addIsolines(isolines, label) {
     this.isolines = isolineObject(isolines);
     this.view.scene.add(this.isolines);
     // A path that follows the isolines would be drawn twice over.
-    this.layers.isolines = { label: 'Isolines', key: 'i', shown: !this.path, objects: [this.isolines] };
+    this.layers.isolines = { label, key: 'i', shown: !this.path, objects: [this.isolines] };
   }
 
   addPath(area) {

@@ -88,7 +88,8 @@ RawMesh read_raw(std::string_view content, const std::filesystem::path& name, Pr
   throw Error(ErrorCode::bad_input, "unknown mesh format",
               {.element = "byte 0",
                .value = shown(content.substr(0, 16)),
-               .advice = "give a file in STL, OBJ, PLY or OFF format"});
+               .advice = "give a mesh in STL, OBJ, PLY or OFF format, or a STEP or IGES file that ends in .step, .stp, "
+                         ".iges or .igs"});
 }
 
 void check_not_empty(const RawMesh& raw, std::string_view content) {

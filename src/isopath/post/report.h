@@ -70,6 +70,7 @@ struct ReportData {
   const RefinedMesh* shown = nullptr;
   std::vector<VertexScalar> scalars = {};
   std::vector<ReportIsoline> isolines = {};
+  std::string isolines_name = "Isolines";  ///< what the lines are, where they are others
   const ImpactCurve* impact = nullptr;
   const ToolPath* tool = nullptr;
   std::vector<ReportTable> tables = {};

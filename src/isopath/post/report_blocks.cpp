@@ -87,6 +87,7 @@ json meta_of(const ReportData& data, const Vec3& origin) {
                                {"limit", optional_number(scalar.limit)},
                                {"diverging", scalar.diverging}});
   }
+  meta["isolines_name"] = data.isolines_name;
   meta["isolines"] = json::array();
   for (const ReportIsoline& line : data.isolines) {
     meta["isolines"].push_back({{"points", line.points.size()}, {"closed", line.closed}, {"level", line.level}});
