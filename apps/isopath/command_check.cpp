@@ -60,6 +60,7 @@ Json report_json(const MeshReport& report) {
           {"area", report.area},
           {"size", report.bounds.isEmpty() ? 0 : report.bounds.diagonal().norm()},
           {"components", report.components},
+          {"largest_component_area", report.largest_area},
           {"genus", report.genus ? Json(*report.genus) : Json()},
           {"closed", report.closed},
           {"manifold", report.manifold},
@@ -130,6 +131,16 @@ std::string loops_text(const std::vector<BoundaryLoop>& loops) {
   return text;
 }
 
+/// What it means that a mesh is in pieces.
+std::string pieces_text(const MeshReport& report) {
+  if (report.components < 2) return "";
+  return fmt::format(
+      "note: {} separate pieces, the largest with {:.3g} % of the area: 'isopath plan' covers each by itself, with "
+      "lifts\n"
+      "  from one to the next; --repair --largest-component keeps only the largest\n",
+      report.components, 100 * report.largest_area / report.area);
+}
+
 std::string element_text(const std::vector<std::vector<Index>>& first) {
   std::vector<std::string> parts;
   for (const auto& element : first) parts.push_back(fmt::format("{}", fmt::join(element, "-")));
@@ -140,6 +151,7 @@ std::string findings_text(const Findings& findings, const CheckArguments& argume
   const bool changed = findings.repaired && !findings.repaired->changes.empty();
   std::string text = figures_text(findings.file, changed ? &findings.after : nullptr);
   text += loops_text((changed ? findings.after : findings.file).boundary_loops);
+  if (findings.repaired) text += pieces_text(findings.after);
   for (const Defect& defect : findings.file.defects) {
     text += fmt::format("{}: {} × {}, first: {}\n", name_of(defect.severity), defect.count, name_of(defect.kind),
                         element_text(defect.first));
@@ -151,6 +163,10 @@ std::string findings_text(const Findings& findings, const CheckArguments& argume
   }
   if (!findings.repaired) return text + "not usable\n";
   if (arguments.repair) return text + (changed ? "repaired" : "nothing to repair") + ": " + arguments.output + "\n";
+  if (arguments.repairs.largest_component || arguments.repairs.fill_holes_length > 0) {
+    return text +
+           "'isopath plan' neither fills holes nor drops components: --repair -o OUT writes the mesh after repair\n";
+  }
   return text + (changed ? "ready to plan on: 'isopath plan' makes these repairs by itself\n" : "ready to plan on\n");
 }
 
@@ -219,10 +235,9 @@ void add_check(CLI::App& app, CommonFlags& flags, Action& action) {
   command->add_flag("--repair", arguments->repair, "Mend the mesh and write it to the file of -o");
   command->add_option("-o,--output", arguments->output, "The mended mesh: .stl, .obj, .ply or .off, in mm");
   command->add_flag("--largest-component", arguments->repairs.largest_component,
-                    "With --repair: keep only the component with the largest area");
+                    "Keep only the component with the largest area");
   command
-      ->add_option("--fill-holes", arguments->repairs.fill_holes_length,
-                   "With --repair: close boundary loops no longer than this, mm")
+      ->add_option("--fill-holes", arguments->repairs.fill_holes_length, "Close boundary loops no longer than this, mm")
       ->check(number_from_0())
       ->capture_default_str();
   add_common_flags(*command, flags);

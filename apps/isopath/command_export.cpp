@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "isopath/core/atomic_file.h"
@@ -39,7 +40,7 @@ Process process_for(const ExportArguments& arguments, const std::filesystem::pat
   return std::filesystem::exists(job) ? read_job(job).tool.process : ToolOptions{}.process;
 }
 
-void run_export(const ExportArguments& arguments, const CommonFlags& flags) {
+void run_export(const CLI::App& command, const ExportArguments& arguments, const CommonFlags& flags) {
   check_program_format(arguments.format);
   std::filesystem::path file = arguments.path;
   if (std::filesystem::is_directory(file)) file /= "tool.csv";
@@ -47,6 +48,14 @@ void run_export(const ExportArguments& arguments, const CommonFlags& flags) {
   options.process = process_for(arguments, file.parent_path());
   options.spindle_rpm = arguments.spindle_rpm;
   options.retract = arguments.retract;
+  const bool is_gcode = arguments.format.starts_with("gcode");
+  const std::string to = fmt::format("--to {}", arguments.format);
+  const bool is_spray = options.process == Process::spray;
+  const std::vector<std::string> idle =
+      warnings_of_idle(command, {{"--process", !is_gcode, to},
+                                 {"--spindle-rpm", !is_gcode || is_spray, is_gcode ? "--process spray" : to},
+                                 {"--retract", !is_gcode, to}});
+  print_warnings(flags, idle);
   ConsoleProgress progress(flags.quiet);
   progress.stage("export");
   const ToolPath path = read_path(file);
@@ -57,7 +66,8 @@ void run_export(const ExportArguments& arguments, const CommonFlags& flags) {
   const nlohmann::ordered_json report = {{"points", path.points.size()},
                                          {"format", arguments.format},
                                          {"bytes", content.size()},
-                                         {"output", arguments.output}};
+                                         {"output", arguments.output},
+                                         {"warnings", idle}};
   print_json(report);
 }
 
@@ -87,7 +97,9 @@ void add_export(CLI::App& app, CommonFlags& flags, Action& action) {
       "  isopath export out --to gcode5 -o part.ngc\n"
       "  isopath export out/tool.csv --to yaml -o poses.yaml\n\n" +
       format_help());
-  command->callback([&flags, &action, arguments] { action = [&flags, arguments] { run_export(*arguments, flags); }; });
+  command->callback([&flags, &action, arguments, command] {
+    action = [&flags, arguments, command] { run_export(*command, *arguments, flags); };
+  });
 }
 
 }  // namespace isopath::app

@@ -111,7 +111,7 @@ Picture picture_of(const MedialAxisArguments& arguments, const TriangleMesh& mes
   return picture;
 }
 
-void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& flags) {
+void run_medial_axis(const CLI::App& command, const MedialAxisArguments& arguments, const CommonFlags& flags) {
   const std::string extension = extension_of(arguments.output);
   check_report(arguments.report);
   if (arguments.output.empty() && arguments.report.empty()) {
@@ -122,6 +122,8 @@ void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& fl
   }
   if (arguments.min_angle > 180)
     refuse_value("option --min-angle", fmt::format("{}", arguments.min_angle), "at most 180");
+  std::vector<std::string> warnings = warnings_of_idle(command, {{"--min-angle", arguments.voronoi, "--voronoi"}});
+  print_warnings(flags, warnings);
   ConsoleProgress progress(flags.quiet);
   const auto [part, sources] = load_with_sources(arguments.input, flags, progress);
   progress.stage("distance field");
@@ -151,7 +153,8 @@ void run_medial_axis(const MedialAxisArguments& arguments, const CommonFlags& fl
   }
   report["output"] = arguments.output;
   if (!arguments.report.empty()) report["report"] = arguments.report;
-  report["warnings"] = part.warnings;
+  warnings.insert(warnings.end(), part.warnings.begin(), part.warnings.end());
+  report["warnings"] = warnings;
   print_json(report);
 }
 
@@ -190,8 +193,9 @@ void add_medial_axis(CLI::App& app, CommonFlags& flags, Action& action) {
       "  isopath medial-axis part.stl --source boundary --prune 1.5 --report axis.html\n"
       "  isopath medial-axis part.stl --source vertex:12,400,731 --voronoi -o cells.vtp\n\n" +
       source_help());
-  command->callback(
-      [&flags, &action, arguments] { action = [&flags, arguments] { run_medial_axis(*arguments, flags); }; });
+  command->callback([&flags, &action, arguments, command] {
+    action = [&flags, arguments, command] { run_medial_axis(*command, *arguments, flags); };
+  });
 }
 
 }  // namespace isopath::app

@@ -151,8 +151,30 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
   return text;
 }
 
-void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
+/// What was given in vain, beside the other options and what the job file says.
+std::vector<std::string> idle_options(const CLI::App& command, const PlanArguments& given, const Job& job) {
+  const std::string pattern = fmt::format("--pattern {}", name_of(job.pattern));
+  const std::string process = fmt::format("--process {}", name_of(job.tool.process));
+  const PartitionBy by = job.partition.by;
+  const std::string partition = fmt::format("--partition {}", name_of(by));
+  const bool is_planar = job.pattern == Pattern::planar;
+  const bool is_spray = job.tool.process == Process::spray;
+  return warnings_of_idle(command, {{"--source", is_planar, pattern},
+                                    {"--direction", !is_planar, pattern},
+                                    {"--blend", given.blend_form && !form_of(job.blend),
+                                     fmt::format("--blend-form {}", name_of(job.blend))},
+                                    {"--circle-radius", job.pattern != Pattern::trochoidal, pattern},
+                                    {"--circle-step", job.pattern != Pattern::trochoidal, pattern},
+                                    {"--crease-angle", by == PartitionBy::none || by == PartitionBy::medial, partition},
+                                    {"--unevenness", by == PartitionBy::none || by == PartitionBy::creases, partition},
+                                    {"--tool", is_spray, process},
+                                    {"--stand-off", !is_spray, process}});
+}
+
+void run_command(const CLI::App& command, const PlanArguments& arguments, const CommonFlags& flags) {
   const Job job = job_of(arguments);
+  const std::vector<std::string> idle = idle_options(command, arguments, job);
+  print_warnings(flags, idle);
   check_output_folder(arguments.output);  // before the work, not after it
   PlanResult result;
   {
@@ -164,6 +186,7 @@ void run_command(const PlanArguments& arguments, const CommonFlags& flags) {
     result.warnings.push_back(fmt::format("{} in {} is of an earlier run", name, arguments.output));
   }
   print_warnings(flags, result.warnings);
+  result.warn_of(idle);  // of the command, and not of the job that the folder holds
   print(flags.json ? summary_json(result) : text_summary(result, arguments.output));
 }
 
@@ -307,7 +330,9 @@ void add_plan(CLI::App& app, CommonFlags& flags, Action& action) {
       "The flags are shorthands for the job file and override it. The job of a run is written to\n"
       "DIR/job.yaml; running that again gives the same files, but for the times in summary.json.\n\n" +
       source_help());
-  command->callback([&flags, &action, arguments] { action = [&flags, arguments] { run_command(*arguments, flags); }; });
+  command->callback([&flags, &action, arguments, command] {
+    action = [&flags, arguments, command] { run_command(*command, *arguments, flags); };
+  });
 }
 
 }  // namespace isopath::app

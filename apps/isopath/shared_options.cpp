@@ -100,6 +100,15 @@ CLI::Validator not_empty() {
   return {[](std::string& text) { return std::string(text.empty() ? "empty, where a name belongs" : ""); }, ""};
 }
 
+std::vector<std::string> warnings_of_idle(const CLI::App& command, const std::vector<IdleOption>& options) {
+  std::vector<std::string> warnings;
+  for (const IdleOption& given : options) {
+    if (given.is_idle && command.count(given.option) > 0)
+      warnings.push_back(fmt::format("{} has no effect with {}", given.option, given.beside));
+  }
+  return warnings;
+}
+
 std::string source_help() { return fmt::format("SRC is one of\n{}\n", source_spec_forms()); }
 
 }  // namespace isopath::app

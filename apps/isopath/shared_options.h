@@ -44,6 +44,15 @@ CLI::Validator number_from_0();
 /// Refuses an empty text.
 CLI::Validator not_empty();
 
+/// An option, and what it does nothing beside.
+struct IdleOption {
+  const char* option;
+  bool is_idle;        ///< as the other options are
+  std::string beside;  ///< what makes it idle, as it would be written on the command line
+};
+/// A sentence for each that was given in vain: "--direction has no effect with --pattern spiral".
+std::vector<std::string> warnings_of_idle(const CLI::App& command, const std::vector<IdleOption>& options);
+
 /// Explains SRC at the end of a command's help.
 std::string source_help();
 

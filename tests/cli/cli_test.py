@@ -303,6 +303,14 @@ class Check(Program):
         self.assertTrue(report["sound"])
         self.assertIn("ready to plan on", run("check", self.plane).stdout)
 
+    def test_says_that_a_mesh_is_in_pieces(self):
+        self.assertNotIn("pieces", run("check", self.plane).stdout)
+        two = self.path("two.off")
+        self.write(two, "OFF\n6 2 0\n0 0 0\n3 0 0\n0 3 0\n9 0 0\n10 0 0\n9 1 0\n3 0 1 2\n3 3 4 5\n")
+        self.assertIn("2 separate pieces, the largest with 90 % of the area", run("check", two).stdout)
+        report = json.loads(run("check", two, "--json").stdout)
+        self.assertEqual((report["components"], report["largest_component_area"]), (2, 4.5))
+
     def test_repairs_on_request(self):
         broken, mended = self.path("broken.off"), self.path("mended.off")
         # The second triangle is the wrong way round, the third is there twice.
@@ -439,6 +447,29 @@ class Plan(Program):
         self.assertNotIn("distance field", result.stderr)
         self.assert_refused(run("plan", slope, "--post", "gcode3", "--axis", "0,1,1", "-o", out), USAGE, "gcode3", "0, 0, 1")
         self.plan(slope, "--post", "gcode3", "--axis", "0,0,1", "--no-report", "-o", out)
+
+    def test_options_without_effect_are_pointed_out(self):
+        job = self.path("job.yaml")
+        self.write(job, "mesh: plane.off\nspacing: 9\nreport: false\ntool:\n  process: spray\n")
+        spiral = ["--pattern", "spiral"]
+        for idle, beside in [(["--direction", "1,0,0"], spiral), (["--circle-radius", 5], spiral),
+                             (["--circle-step", 5], spiral), (["--crease-angle", 30], ["--partition", "medial"]),
+                             (["--unevenness", 2], ["--partition", "creases"]), (["--blend"], ["--blend-form", "none"]),
+                             (["--source", "vertex:1"], ["--pattern", "planar"]),
+                             (["--tool", "ball:6"], ["--process", "spray"]),
+                             (["--stand-off", 100], ["--process", "grind"])]:
+            told = f"{idle[0]} has no effect with {' '.join(beside)}"
+            result = self.plan(job, *idle, *beside, "--json", "-o", self.path("out"))
+            self.assertIn(f"isopath: warning: {told}\n", result.stderr)
+            self.assertIn(told, json.loads(result.stdout)["warnings"])
+        useful = self.plan(job, "--stand-off", 100, "--pattern", "planar", "--direction", "1,0,0", "-o", self.path("out"))
+        self.assertNotIn("no effect", useful.stderr)
+        self.assertIn("--stand-off has no effect with --process mill",
+                      self.plan(self.plane, "--stand-off", 100, "--no-report", "-o", self.path("out")).stderr)
+        told = run("export", self.path("out"), "--to", "csv", "--spindle-rpm", 100, "-o", self.path("x.csv")).stderr
+        self.assertIn("--spindle-rpm has no effect with --to csv", told)
+        told = run("medial-axis", self.plane, "--source", "vertex:0,8", "--voronoi", "--min-angle", 5, "-o", self.path("x.csv")).stderr
+        self.assertIn("--min-angle has no effect with --voronoi", told)
 
     def test_an_edge_that_the_tool_axis_jumps_at_is_warned_of(self):
         folded = self.path("folded.off")

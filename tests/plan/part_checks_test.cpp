@@ -23,6 +23,24 @@ TEST(PartChecks, WarnOfSizesThatAnotherUnitWouldExplain) {
   }
 }
 
+TEST(PartChecks, WarnOfPartsInManyPieces) {
+  const auto apart = [](Index pieces, Index triangles_each) {
+    TriangleSoup soup;
+    for (Index k = 0; k < pieces; ++k) {
+      const auto first = static_cast<Index>(soup.positions.size());
+      soup.positions.emplace_back(3.0 * k, 0, 0);
+      for (Index i = 0; i <= triangles_each; ++i)
+        soup.positions.emplace_back(3.0 * k + std::cos(0.1 * i), std::sin(0.1 * i), 0);
+      for (Index i = 1; i <= triangles_each; ++i) soup.triangles.push_back({first, first + i, first + i + 1});
+    }
+    return warning_of_pieces(TriangleMesh(std::move(soup)));
+  };
+  EXPECT_FALSE(apart(49, 1));
+  ASSERT_TRUE(apart(50, 1));
+  EXPECT_NE(apart(50, 1)->find("in 50 separate pieces, of 1 triangles"), std::string::npos);
+  EXPECT_NE(apart(50, 4)->find("in 50 separate pieces: each"), std::string::npos);
+}
+
 TEST(PartChecks, WarnOfToolsLargerThanThePart) {
   const ToolOptions mill{.process = Process::mill, .stand_off = 200, .ball_diameter = 10};
   EXPECT_TRUE(warning_of_tool(mill, 9));

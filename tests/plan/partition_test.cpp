@@ -119,6 +119,18 @@ TEST(Partition, RefusesWhatItCannotUse) {
   EXPECT_THROW(partition(mesh, 1, {.unevenness = 1}), Error);
 }
 
+TEST(Partition, RefusesAnAngleThatTakesEveryEdgeForACrease) {
+  const TriangleMesh sphere = test::icosphere(3, 10);  // 1280 triangles, with angles of some degrees between them
+  EXPECT_EQ(partition(sphere, 1e-3, {.by = PartitionBy::creases}).n_patches, 1);
+  try {
+    partition(sphere, 1e-3, {.by = PartitionBy::creases, .crease_angle = 1e-3});
+    FAIL() << "1280 patches";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::no_plan);
+    EXPECT_NE(error.where().value.find("1280 patches"), std::string::npos);
+  }
+}
+
 TEST(MedialCuts, RunFromBoundaryToBoundaryAndAreShort) {
   const TriangleMesh mesh = dumbbell();
   const MedialCuts cuts = medial_cuts(ExactField::compute(mesh, boundary_source(mesh)));

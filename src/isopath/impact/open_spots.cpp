@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "isopath/field/exact_field_data.h"
@@ -24,11 +26,14 @@ constexpr double largest_bounded = 0.5;
 constexpr double smallest_bounded = 3;
 /// Centres of neighbouring cells are at most this many of their radii apart, together.
 constexpr double reach_of_neighbours = 1.6;
+/// A large face may have millions of parts.
+constexpr int parts_between_checkpoints = 256;
 
 class SpotSearch {
  public:
-  SpotSearch(const ExactField& field, double limit, double resolution, const OpenSpotsNear& near)
-      : field_(field), mesh_(field.mesh()), limit_(limit), resolution_(resolution), near_(near) {}
+  SpotSearch(const ExactField& field, double limit, double resolution, const OpenSpotsNear& near,
+             const Progress& progress)
+      : field_(field), mesh_(field.mesh()), limit_(limit), resolution_(resolution), near_(near), progress_(progress) {}
 
   /// What may be farther than the limit is halved until it is small, or certainly farther and small enough.
   void search(Index face, std::vector<SpotCell>& cells) const {
@@ -41,7 +46,8 @@ class SpotSearch {
     for (const Index v : mesh_.triangle(face)) {
       if (!is_large && !std::isfinite(field_.value_at_vertex(v))) return;
     }
-    while (!parts.empty()) {
+    for (int n = 0; !parts.empty(); ++n) {
+      if (n % parts_between_checkpoints == 0) progress_.checkpoint();
       const FacePart part = parts.back();
       parts.pop_back();
       const SurfacePoint centre{face, part.centre()};
@@ -81,9 +87,8 @@ class SpotSearch {
   double limit_;
   double resolution_;
   const OpenSpotsNear& near_;
+  const Progress& progress_;
 };
-
-using GridCell = std::array<Index, 3>;
 
 void put_top_first(OpenSpot& spot) {
   const auto top = std::max_element(spot.cells.begin(), spot.cells.end(),
@@ -91,36 +96,84 @@ void put_top_first(OpenSpot& spot) {
   std::iter_swap(spot.cells.begin(), top);
 }
 
-/// Cells whose parts may touch belong to one spot.
-std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cells) {
-  double size = 0;
-  for (const SpotCell& cell : cells) size = std::max(size, 2 * reach_of_neighbours * cell.radius);
-  const auto grid_cell = [&](const Vec3& p) {
-    return GridCell{static_cast<Index>(std::floor(p.x() / size)), static_cast<Index>(std::floor(p.y() / size)),
-                    static_cast<Index>(std::floor(p.z() / size))};
-  };
-  std::vector<std::pair<GridCell, Index>> grid;
-  for (std::size_t i = 0; i < cells.size(); ++i) grid.emplace_back(grid_cell(cells[i].position), static_cast<Index>(i));
-  std::sort(grid.begin(), grid.end());
-  DisjointSets sets(cells.size());
-  for (const auto& [at, i] : grid) {
-    for (Index x = at[0] - 1; x <= at[0] + 1; ++x) {
-      for (Index y = at[1] - 1; y <= at[1] + 1; ++y) {
-        const std::pair<GridCell, Index> first{{x, y, at[2] - 1}, 0};
-        for (auto e = std::lower_bound(grid.begin(), grid.end(), first);
-             e != grid.end() && e->first <= GridCell{x, y, at[2] + 1}; ++e) {
-          if (e->second <= i) continue;  // each two once
-          const SpotCell& a = cells[i];
-          const SpotCell& b = cells[e->second];
-          const double reach = reach_of_neighbours * (a.radius + b.radius);
-          if ((a.position - b.position).squaredNorm() > reach * reach) continue;
-          // not from one side of a thin wall to the other
-          if (a.at.face == b.at.face || mesh.face_normal(a.at.face).dot(mesh.face_normal(b.at.face)) > 0)
-            sets.join(i, e->second);
+/// Finds spot cells by place. Cells of about one size share a grid, so that a place has few of them near it.
+class SpotGrid {
+ public:
+  /// Of the cells whose radius is at most `largest`.
+  SpotGrid(const std::vector<SpotCell>& cells, std::vector<Index> members, double largest)
+      : cells_(cells), size_(2 * reach_of_neighbours * largest) {
+    Box3 box;
+    for (const Index i : members) box.extend(cells[i].position);
+    corner_ = box.min();  // counted from here, numbers stay small wherever the part lies
+    for (const Index i : members) entries_.emplace_back(place_of(cells[i].position), i);
+    std::sort(entries_.begin(), entries_.end());
+  }
+
+  /// Calls visit(other) for the members that may touch a cell no larger than they are, and for others near it.
+  template <class Visit>
+  void for_near(Index cell, const Visit& visit) const {
+    const GridPlace at = place_of(cells_[cell].position);
+    for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
+      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
+        const std::pair<GridPlace, Index> first{{x, y, at[2] - 1}, 0};
+        for (auto e = std::lower_bound(entries_.begin(), entries_.end(), first);
+             e != entries_.end() && e->first <= GridPlace{x, y, at[2] + 1}; ++e) {
+          visit(e->second);
         }
       }
     }
   }
+
+ private:
+  using GridPlace = std::array<std::int64_t, 3>;
+  GridPlace place_of(const Vec3& position) const {
+    GridPlace place;
+    for (int k = 0; k < 3; ++k) place[k] = static_cast<std::int64_t>(std::floor((position[k] - corner_[k]) / size_));
+    return place;
+  }
+
+  const std::vector<SpotCell>& cells_;
+  double size_;
+  Vec3 corner_;
+  std::vector<std::pair<GridPlace, Index>> entries_;
+};
+
+bool may_touch(const TriangleMesh& mesh, const SpotCell& a, const SpotCell& b) {
+  const double reach = reach_of_neighbours * (a.radius + b.radius);
+  if ((a.position - b.position).squaredNorm() > reach * reach) return false;
+  // not from one side of a thin wall to the other
+  return a.at.face == b.at.face || mesh.face_normal(a.at.face).dot(mesh.face_normal(b.at.face)) > 0;
+}
+
+/// Joins cells whose parts may touch: each with those about as large, and with all larger ones.
+DisjointSets connected(const TriangleMesh& mesh, const std::vector<SpotCell>& cells, const Progress& progress) {
+  DisjointSets sets(cells.size());
+  double largest = 0;
+  for (const SpotCell& cell : cells) largest = std::max(largest, cell.radius);
+  std::vector<Index> left(cells.size());
+  std::iota(left.begin(), left.end(), 0);
+  const double least = largest / 64;  // few if any are smaller
+  for (; !left.empty(); largest /= 2) {
+    const auto smaller = std::partition(left.begin(), left.end(),
+                                        [&](Index i) { return 2 * cells[i].radius > largest || largest <= least; });
+    const SpotGrid grid(cells, {left.begin(), smaller}, largest);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      if (k % 1024 == 0) progress.checkpoint();
+      const Index i = left[k];
+      const bool is_member = k < static_cast<std::size_t>(smaller - left.begin());
+      grid.for_near(i, [&](Index other) {
+        if (is_member && other <= i) return;  // each two once
+        if (sets.root(i) != sets.root(other) && may_touch(mesh, cells[i], cells[other])) sets.join(i, other);
+      });
+    }
+    left.erase(left.begin(), smaller);
+  }
+  return sets;
+}
+
+/// Cells whose parts may touch belong to one spot.
+std::vector<OpenSpot> group(const TriangleMesh& mesh, std::vector<SpotCell> cells, const Progress& progress) {
+  DisjointSets sets = connected(mesh, cells, progress);
   std::vector<OpenSpot> spots;
   std::vector<Index> number(cells.size(), no_index);
   for (Index i = 0; i < static_cast<Index>(cells.size()); ++i) {
@@ -141,18 +194,17 @@ std::vector<OpenSpot> open_spots(const ExactField& field, double limit, double r
                                  const OpenSpotsNear& near) {
   const Index n = field.mesh().n_faces();
   constexpr Index chunk = 4;  // a large face may take as long as thousands of small ones
-  const SpotSearch spot_search(field, limit, resolution, near);
+  const SpotSearch spot_search(field, limit, resolution, near, progress);
   std::vector<std::vector<SpotCell>> found((n + chunk - 1) / chunk);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
     const auto first = static_cast<Index>(k) * chunk;
     for (Index f = first; f < std::min(n, first + chunk); ++f) {
-      progress.checkpoint();
       spot_search.search(f, found[k]);
     }
   });
   std::vector<SpotCell> cells;
   for (const auto& part : found) cells.insert(cells.end(), part.begin(), part.end());
-  return group(field.mesh(), std::move(cells));
+  return group(field.mesh(), std::move(cells), progress);
 }
 
 std::vector<OpenSpot> halves_of(const OpenSpot& spot, double smallest) {

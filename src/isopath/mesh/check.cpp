@@ -170,7 +170,7 @@ class Checker {
       }
     }
     const Index referenced = check_fans(fans);
-    for (Index f = 0; f < static_cast<Index>(sound_.size()); ++f) report_.components += pieces.root(f) == f;
+    measure_pieces(pieces);
     trace_boundary(pairing, crowded);
     report_.edges = static_cast<Index>(edges.size());
     report_.euler_characteristic = referenced - report_.edges + static_cast<Index>(sound_.size());
@@ -181,6 +181,19 @@ class Checker {
       // χ = 2 c − 2 g − b, summed over the components.
       const auto loops = static_cast<Index>(report_.boundary_loops.size());
       report_.genus = (2 * report_.components - loops - report_.euler_characteristic) / 2;
+    }
+  }
+
+  void measure_pieces(DisjointSets& pieces) {
+    std::vector<double> area(sound_.size(), 0.0);
+    for (std::size_t f = 0; f < sound_.size(); ++f) {
+      const auto root = pieces.root(static_cast<Index>(f));
+      report_.components += root == static_cast<Index>(f);
+      const auto& [a, b, c] = sound_[f];
+      const auto& p = soup_.positions;
+      if (!is_usable(p[a]) || !is_usable(p[b]) || !is_usable(p[c])) continue;
+      area[root] += shape_of(p[a], p[b], p[c]).area();
+      report_.largest_area = std::max(report_.largest_area, area[root]);
     }
   }
 

@@ -65,10 +65,11 @@ struct MeshReport {
   Index triangles = 0;
   Index vertices = 0;
   Index edges = 0;
-  double area = 0;       ///< mm², of the triangles with usable coordinates
-  Box3 bounds;           ///< of the usable positions
-  Index components = 0;  ///< pieces of triangles joined by edges
-  bool closed = false;   ///< every edge has two triangles or more
+  double area = 0;          ///< mm², of the triangles with usable coordinates
+  Box3 bounds;              ///< of the usable positions
+  Index components = 0;     ///< pieces of triangles joined by edges
+  double largest_area = 0;  ///< mm², of the component with the most
+  bool closed = false;      ///< every edge has two triangles or more
   bool manifold = false;
   bool orientable = false;                   ///< its manifold edges allow a consistent orientation
   Index euler_characteristic = 0;            ///< referenced vertices − edges + triangles

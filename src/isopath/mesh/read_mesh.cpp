@@ -183,6 +183,8 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
     file.soup = read_step(path, options.step, progress);
     file.vertex_of_file_vertex.resize(file.soup.positions.size());
     std::iota(file.vertex_of_file_vertex.begin(), file.vertex_of_file_vertex.end(), 0);
+    if (options.unit_mm != 1)
+      file.notes.emplace_back("--unit has no effect with a STEP or IGES file, which names its own");
     return file;
   }
   return read_mesh_content(read_whole_file(path), path, options, progress);

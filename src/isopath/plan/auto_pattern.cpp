@@ -14,6 +14,11 @@ constexpr double similar_length = 1.05;
 /// The right angles of joints are worth so much of it.
 constexpr double worthwhile_length = 1.1;
 
+/// Where every pattern needs more lifts than this, from one component to the next, sparing less than the share of them
+/// is not worth planning all anew.
+constexpr Index many_lifts = 20;
+constexpr double worthwhile_lifts = 0.1;
+
 Index lifts_of(const ImpactCurve& curve) { return curve.points.back().piece; }
 
 double length_on_surface(const ImpactCurve& curve) {
@@ -25,6 +30,12 @@ bool clearly_better(const ImpactCurve& curve, const ImpactCurve& than) {
   const double other_length = length_on_surface(than);
   if (lifts_of(curve) < lifts_of(than)) return length <= similar_length * other_length;
   return lifts_of(curve) == lifts_of(than) && worthwhile_length * length < other_length;
+}
+
+/// Whether closed curves, one for every component, could spare a good share of the lifts.
+bool may_spare_lifts(const ImpactCurve& curve, const TriangleMesh& mesh) {
+  const Index least = mesh.n_components() - 1;
+  return least <= many_lifts || lifts_of(curve) - least > worthwhile_lifts * lifts_of(curve);
 }
 
 /// Area that the function reaches.
@@ -76,6 +87,7 @@ ChosenPlan plan_by_part(const TriangleMesh& mesh, const SurfaceFunction& functio
   };
   ChosenPlan first = draft(pattern_by_isolines(mesh, function, values, progress));
   if (lifts_of(first.plan.curve) > 0) {
+    if (!may_spare_lifts(first.plan.curve, mesh)) return finished(std::move(first));
     ChosenPlan other = draft(Pattern::two_way);
     return finished(clearly_better(other.plan.curve, first.plan.curve) ? std::move(other) : std::move(first));
   }

@@ -17,7 +17,9 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double smallest_part = 5;  ///< mm
 constexpr double smallest_with_unit = 1;
 constexpr double largest_part = 20000;  ///< mm
-constexpr double most_gap = 1.1;        ///< spacings: beyond what meshes and roundings account for
+constexpr Index many_pieces = 50;
+constexpr Index triangles_of_a_scrap = 4;
+constexpr double most_gap = 1.1;  ///< spacings: beyond what meshes and roundings account for
 constexpr double jump = 30 * degree;
 constexpr double facing_away = degree;  ///< beyond a right angle
 constexpr double share_out_of_reach = 1e-3;
@@ -95,6 +97,17 @@ std::optional<std::string> warning_of_size(double size, bool has_unit) {
   if (size >= smallest_part && size <= largest_part) return std::nullopt;
   return fmt::format("the part measures {:.4g} mm: if its file is in {}, give --unit (in a job: unit)", size,
                      size < smallest_part ? "metres or inches" : "another unit than mm");
+}
+
+std::optional<std::string> warning_of_pieces(const TriangleMesh& mesh) {
+  const Index pieces = mesh.n_components();
+  if (pieces < many_pieces) return std::nullopt;
+  return fmt::format(
+      "the part is in {} separate pieces{}: each is covered by itself, with lifts from one to the next", pieces,
+      mesh.n_faces() < triangles_of_a_scrap * pieces
+          ? fmt::format(", of {:.2g} triangles on average: its file may hold no surface but loose triangles",
+                        static_cast<double>(mesh.n_faces()) / static_cast<double>(pieces))
+          : "");
 }
 
 std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size) {

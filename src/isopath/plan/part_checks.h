@@ -18,6 +18,9 @@ namespace isopath {
 /// larger than 20 m: more likely its file is in another unit.
 std::optional<std::string> warning_of_size(double size, bool has_unit);
 
+/// Says that the part is in so many pieces that it may be no surface at all, but triangles that do not meet.
+std::optional<std::string> warning_of_pieces(const TriangleMesh& mesh);
+
 /// Says that the ball is larger than the part, or the stand-off of a nozzle than ten of it.
 std::optional<std::string> warning_of_tool(const ToolOptions& tool, double size);
 

@@ -24,6 +24,8 @@ namespace {
 constexpr int most_rounds = 8;
 /// Where no more passes than these lie between border and axis, parting wide from narrow has nothing to even out.
 constexpr double least_passes = 3;
+/// Into so many patches creases may divide a component.
+constexpr Index most_patches = 500;
 
 std::vector<char> creases(const TriangleMesh& mesh, double angle) {
   std::vector<char> is_crease(mesh.n_edges(), 0);
@@ -181,6 +183,18 @@ class Joiner {
   std::vector<Index> into_;
 };
 
+/// Every patch costs a field, a plan and a measurement. Where there are so many, the angle takes every edge for a
+/// crease.
+void check_count(const Partition& parts, double spacing, const PartitionOptions& options) {
+  if (parts.n_patches - parts.mesh.n_components() < most_patches) return;
+  throw Error(
+      ErrorCode::no_plan, "the creases divide the part into too many patches",
+      {.element = "crease_angle",
+       .value = fmt::format("{:.4g} degrees makes {} patches at a spacing of {:.4g} mm, limit {}",
+                            options.crease_angle * 180 / std::numbers::pi, parts.n_patches, spacing, most_patches),
+       .advice = "give a larger angle, or a larger spacing: patches narrower than that are joined"});
+}
+
 }  // namespace
 
 std::string_view name_of(PartitionBy by) {
@@ -228,6 +242,7 @@ Partition partition(TriangleMesh mesh, double spacing, const PartitionOptions& o
     joiner.relabel(parts);
   };
   join();
+  check_count(parts, spacing, options);
   if (by_axis) {
     MedialSplitter(parts, spacing, options.unevenness, progress).run();
     join();

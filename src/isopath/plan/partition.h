@@ -38,7 +38,7 @@ struct Partition {
 /// between it and the border. Creases that lead nowhere part nothing. A patch narrower than the spacing
 /// (twice its area over its perimeter) has no room for a pass of its own and is joined to the neighbour that it shares
 /// the longest border with. Throws Error(bad_usage) for invalid options or a spacing that is not positive,
-/// Error(cancelled) on request.
+/// Error(no_plan) where creases make more than 500 patches, Error(cancelled) on request.
 Partition partition(TriangleMesh mesh, double spacing, const PartitionOptions& options,
                     Progress& progress = Progress::none());
 

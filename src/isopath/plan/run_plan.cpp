@@ -193,6 +193,7 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (auto warning = warning_of_size(mesh.size(), job.unit != LengthUnit::millimetre)) {
     result.warnings.push_back(*std::move(warning));
   }
+  if (auto warning = warning_of_pieces(mesh)) result.warnings.push_back(*std::move(warning));
   if (auto warning = warning_of_tool(job.tool, mesh.size())) result.warnings.push_back(*std::move(warning));
   result.spacing = spacing_of(job, mesh, result.warnings);
   check_against_size(job, result.spacing, mesh.size());
