@@ -64,8 +64,27 @@ build/isopath contours "${plate[@]}" --spacing 8 -o "$out/lines.json"
 python3 tools/axis_picture.py "$out/axis.csv" "$out/lines.json" docs/img/medial_axis.svg
 echo docs/img/medial_axis.svg
 
-# blended fields, on parts made for them
+# contours and the medial axis on a part in space
+shown() { # NAME COMMAND arguments...
+  local name=$1
+  shift
+  build/isopath "$@" --source boundary --quiet --report "$out/$name.html" >/dev/null
+  node tools/screenshot.mjs "$out/$name.html" "docs/img/$name.png" --size 720x480 --only-part
+  echo "docs/img/$name.png"
+}
+shown contours contours data/mech_part_holes.off --unit m --spacing 50
+shown medial_axis_on_part medial-axis data/mech_part_holes.off --unit m --prune 2.5
+
 python3 tools/plates.py "$out/plates"
+
+# cusps on waves, in one colour scale: constant scallop and planes
+waves=("$out/plates/waves.off" --tool ball:6 --scallop 0.04)
+plan scallop_constant "${waves[@]}" --pattern meander --source plane:1,0,0,0
+plan scallop_planes "${waves[@]}" --pattern planar --direction 1,0,0
+picture scallop_constant scallop_constant --size 480x400 --color scallop --hide tool,path,arrows
+picture scallop_planes scallop_planes --size 480x400 --color scallop --hide tool,path,arrows
+
+# blended fields, on parts made for them
 blended() { # RUN PART arguments...
   local run=$1 part=$2
   shift 2

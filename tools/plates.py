@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the flat and wavy parts of docs/blending.md as OFF files: plates.py folder"""
+"""Writes the flat and wavy parts of docs/blending.md and docs/anisotropic.md as OFF files: plates.py folder"""
 
 import math
 import pathlib
@@ -92,3 +92,4 @@ ring("eccentric", [(60 * math.cos(t), 60 * math.sin(t)) for t in turn[::2]],
 holes = [(8, 13, 7, 11), (21, 25, 3, 7), (28, 33, 11, 15)]
 cells("plate", 40, 20, 5, lambda i, j: not any(a <= i < b and c <= j < d for a, b, c, d in holes),
       lambda x, y: 8 * math.sin(x / 25) * math.cos(y / 25))
+cells("waves", 160, 160, 0.2, height=lambda x, y: 4.2 * math.sin(0.2 * x) * math.cos(0.2 * y))

@@ -116,6 +116,15 @@ TEST(SurfaceFit, NormalsAndCurvaturesConvergeOnIrregularTriangles) {
   EXPECT_LT(fine[1], coarse[1] / 2);
 }
 
+TEST(SurfaceFit, ASteepBoundaryIsNoHollowerThanTheRest) {
+  // a sin(bx) cos(by) is hollowest at its lowest points, with a b² both ways; elsewhere slopes only flatten it
+  const TriangleMesh mesh =
+      test::height_grid(64, 64, 32, 32, [](double x, double y) { return 4.2 * std::sin(0.2 * x) * std::cos(0.2 * y); });
+  for (const PrincipalCurvatures& k : principal_curvatures(mesh, SmoothNormals(mesh))) {
+    EXPECT_LT(std::max(k.max, -k.min), 1.3 * 4.2 * 0.04);
+  }
+}
+
 TEST(SurfaceFit, ARadiusEvensOutNoise) {
   TriangleSoup soup = test::planar_grid(40, 40, 8, 8).soup();
   test::Rng rng(1);

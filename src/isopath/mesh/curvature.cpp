@@ -51,16 +51,18 @@ constexpr std::size_t most_points = 80;
 /// A fit that leans farther from the mean of the faces' normals than this has too little to go by.
 constexpr double most_slope = 0.6;
 
-/// The vertices around one that are reached without crossing a crease: two rings, then all within the radius, and
-/// further rings while they are too few.
+/// The vertices around one that are reached without crossing a crease: two rings, or three
+/// at a boundary or a crease, then all within the radius, and further rings while they are too few.
 class Surroundings {
  public:
   Surroundings(const TriangleMesh& mesh, const SmoothNormals& normals, const std::vector<Index>& fan, double radius)
       : mesh_(mesh), centre_(mesh.from(fan.front())) {
+    // on a boundary all lies on one side, and a cubic takes three rows of it
+    const int wanted = normals.is_crease(fan.front()) ? 3 : 2;
     std::vector<Index> ring;
     for (const Index h : fan) look_along(h, infinity, ring);
     for (int rings = 1; !ring.empty(); ++rings) {
-      const bool few = rings < 2 || found_.size() < fewest_points;
+      const bool few = rings < wanted || found_.size() < fewest_points;
       if (!few && found_.size() >= most_points) break;
       const std::vector<Index> last = std::move(ring);
       ring.clear();
