@@ -17,18 +17,24 @@
 namespace isopath::app {
 namespace {
 
+constexpr int exit_fault = 1;
+constexpr int exit_interrupted = 130;
+
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void on_interrupt(int) { interrupted = true; }
+/// A second signal ends the program at once, should a step not come to its next checkpoint.
+extern "C" void on_interrupt(int) {
+  if (!interrupted.exchange(true)) return;
+  constexpr std::string_view message = "\nisopath: interrupted twice: ended at once\n";
+  const auto written = ::write(STDERR_FILENO, message.data(), message.size());  // formatting is not safe here
+  ::_exit(written < 0 ? exit_fault : exit_interrupted);
+}
 
 void say(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
-
-constexpr int exit_fault = 1;
-constexpr int exit_interrupted = 130;
 
 int status_of(ErrorCode code) {
   switch (code) {
@@ -121,8 +127,6 @@ void ConsoleProgress::clear_line() {
 void listen_for_interrupts() {
   struct sigaction action {};
   action.sa_handler = on_interrupt;
-  // A second signal ends the program at once, should a step not come to its next checkpoint.
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGHUP, &action, nullptr);

@@ -572,6 +572,8 @@ class Interrupt(Program):
                 self.assertIsNone(process.poll(), "ended before it could be interrupted")
             start = time.monotonic()
             process.send_signal(sent)
+            if sent == signal.SIGTERM:
+                process.send_signal(signal.SIGINT)  # and once more
             message = process.stderr.read()
             process.stderr.close()
             self.assertEqual(process.wait(60 * SLOWNESS), INTERRUPTED, message)

@@ -19,37 +19,44 @@ bool is_reached(const TriangleMesh& mesh, const SurfaceFunction& function, Index
                      [&](Index v) { return std::isfinite(function.value_at_vertex(v)); });
 }
 
-/// Widens the range by what the face holds inside; finer only where the slope allows values beyond it.
-void search(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double tolerance,
-            ValueRange& range) {
+enum class Look { closer, away, enough };
+
+/// Shows the judge the value in the middle of the face, and how far others may be off it, and then of its halves where
+/// the judge wants to look closer.
+template <class Judge>
+void look_at(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, const Judge& judge) {
   const FaceCorners corners = corners_of(mesh, face);
   std::vector<FacePart> parts{FacePart::whole(face)};
   while (!parts.empty()) {
     const FacePart part = parts.back();
     parts.pop_back();
     const double value = function.value({face, part.centre()});
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-    const double reach = radius_of(corners, part) * function.max_slope();
-    const bool beyond = value + reach > range.high + tolerance ||
-                        std::max(value - reach, function.lower_bound()) < range.low - tolerance;
-    if (beyond && part.depth < deepest) halve(corners, part, parts);
+    const Look next = judge(value, radius_of(corners, part) * function.max_slope(), part.depth < deepest);
+    if (next == Look::enough) return;
+    if (next == Look::closer) halve(corners, part, parts);
   }
 }
 
+/// Widens the range by what the face holds inside; finer only where the slope allows values beyond it.
+void search(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double tolerance,
+            ValueRange& range) {
+  look_at(mesh, function, face, [&](double value, double reach, bool may_halve) {
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+    const bool beyond = value + reach > range.high + tolerance ||
+                        std::max(value - reach, function.lower_bound()) < range.low - tolerance;
+    return beyond && may_halve ? Look::closer : Look::away;
+  });
+}
+
 bool may_reach(const TriangleMesh& mesh, const SurfaceFunction& function, Index face, double level) {
-  const FaceCorners corners = corners_of(mesh, face);
-  std::vector<FacePart> parts{FacePart::whole(face)};
-  while (!parts.empty()) {
-    const FacePart part = parts.back();
-    parts.pop_back();
-    const double value = function.value({face, part.centre()});
-    if (value >= level) return true;
-    if (value + radius_of(corners, part) * function.max_slope() < level) continue;
-    if (part.depth >= deepest) return true;
-    halve(corners, part, parts);
-  }
-  return false;
+  bool may = false;
+  look_at(mesh, function, face, [&](double value, double reach, bool may_halve) {
+    if (value + reach < level) return Look::away;
+    may = value >= level || !may_halve;
+    return may ? Look::enough : Look::closer;
+  });
+  return may;
 }
 
 }  // namespace
