@@ -127,13 +127,19 @@ std::string smoothing_text(const PlanResult& result) {
   return text;
 }
 
+/// Five digits, and all those before the point: nobody reads an area with a power of ten.
+std::string rounded(double value) {
+  return value >= 1e5 && value < 1e12 ? fmt::format("{:.0f}", value) : fmt::format("{:.5g}", value);
+}
+
 std::string text_summary(const PlanResult& result, const std::string& folder) {
   const PathFigures& f = result.figures;
   const GapReport& gap = result.gap;
   const double w = result.spacing;
   std::string text = fmt::format("{} path, {:.4g} mm between passes\n", name_of(std::optional(result.pattern)), w);
-  text += fmt::format("  covering length  {:.5g} mm ({:.3f} of area / spacing)\n", f.cover_length, result.length_ratio);
-  text += fmt::format("  covered          {:.2f} % of {:.5g} mm²\n", 100 * gap.covered_fraction, gap.area);
+  text += fmt::format("  covering length  {} mm ({:.3f} of area / spacing)\n", rounded(f.cover_length),
+                      result.length_ratio);
+  text += fmt::format("  covered          {:.2f} % of {} mm²\n", 100 * gap.covered_fraction, rounded(gap.area));
   text += fmt::format("  gap              {:.3f} × spacing at most, {:.3f} for 99 % of the area\n", gap.max / w,
                       gap.p99 / w);
   if (result.scallop) {
