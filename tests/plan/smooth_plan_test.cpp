@@ -66,9 +66,9 @@ TEST(SmoothPart, SamplesAreTheFieldAndRidgesItsMedialAxis) {
   double length = 0;
   for (const std::vector<SurfacePoint>& ridge : samples.ridges) {
     for (std::size_t i = 0; i < ridge.size(); ++i) {
-      const Vec3 p = position_of(finer, ridge[i]);
+      const Vec3 p = position_of(mesh, ridge[i]);
       EXPECT_NEAR(std::min(p.x(), 30 - p.x()), std::min(p.y(), 30 - p.y()), 1e-6);
-      if (i > 0) length += (p - position_of(finer, ridge[i - 1])).norm();
+      if (i > 0) length += (p - position_of(mesh, ridge[i - 1])).norm();
     }
   }
   EXPECT_NEAR(length, 2 * std::sqrt(2.0) * 30, 1e-6);
@@ -147,14 +147,16 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     const PlanResult sharp = run_plan(job);
     job.smooth = 4;
     const PlanResult smooth = run_plan(job);
-    EXPECT_LT(smooth.figures.sharp_corners, 0.7 * sharp.figures.sharp_corners) << name;
+    EXPECT_LT(smooth.figures.sharp_corners, 0.2 * sharp.figures.sharp_corners) << name;
     EXPECT_LE(smooth.figures.lifts, sharp.figures.lifts) << name;
-    EXPECT_LE(smooth.gap.max, 1.01 * widest_corner_gap * job.spacing) << name;
-    EXPECT_GT(smooth.gap.covered_fraction, 0.99) << name;
+    EXPECT_LE(smooth.gap.max, 1.05 * job.spacing) << name;
+    EXPECT_GT(smooth.gap.covered_fraction, 0.999) << name;
+    EXPECT_EQ(smooth.part.mesh.n_faces(), mesh.n_faces()) << name << ": finer meshes are for the function alone";
+    EXPECT_EQ(smooth.distances.size(), static_cast<std::size_t>(mesh.n_vertices())) << name;
     EXPECT_LT(smooth.length_ratio, 1.5 * sharp.length_ratio) << name;
     EXPECT_FALSE(sharp.smoothing);
     ASSERT_TRUE(smooth.smoothing);
-    EXPECT_GT(smooth.smoothing->gap_before, widest_corner_gap * job.spacing) << name;
+    EXPECT_GT(smooth.smoothing->gap_before, 1.15 * job.spacing) << name;
     // what was chosen is the path that came out, and no other way that was planned costs less
     const auto cost = [&](const GapRepairCost& way) {
       return way.length + job.spacing * (20 * way.lifts + 5 * way.sharp_corners);
@@ -181,8 +183,9 @@ TEST(SmoothPlan, WorksWithEveryPatternSourceAndMetric) {
   job.spacing = 4;
   job.smooth = 5;
   const auto expect_covered = [](const PlanResult& result) {
-    EXPECT_GT(result.gap.covered_fraction, 0.98);
-    EXPECT_LE(result.gap.max, 1.01 * widest_corner_gap * result.spacing);
+    const bool as_they_are = result.pattern == Pattern::contour;
+    EXPECT_GT(result.gap.covered_fraction, as_they_are ? 0.98 : 0.999);
+    EXPECT_LE(result.gap.max, (as_they_are ? 1.17 : 1.05) * result.spacing);
   };
   job.pattern = Pattern::contour;
   expect_covered(run_plan(job));
@@ -215,6 +218,9 @@ TEST(SmoothPlan, RefusesWhatItCannotSmooth) {
   Job job = smooth_job_on(planar_grid(2, 2, 20, 20), "smooth_refused");
   job.smooth = -1;
   EXPECT_THROW(job.validate(), Error);
+  job.smooth = 1e-9;
+  job.spacing = 2;
+  EXPECT_THROW(run_plan(job), Error) << "too little to round anything";
   job.smooth = 2;
   EXPECT_NO_THROW(job.validate());
   for (const Pattern pattern : {Pattern::planar, Pattern::double_spiral}) {

@@ -57,9 +57,9 @@ void finish(const SurfaceLinker& linker, const SmoothNormals& normals, const Imp
                    .widest = as_they_are ? widest_corner_gap : widest_gap,
                    .metric = options.metric,
                    .radius = options.min_radius};
-  if (limits.radius == 0 && options.pattern == Pattern::two_way)
-    limits.radius = default_radius_in_spacings * options.spacing;
   const bool two_way = options.pattern == Pattern::two_way;
+  if (limits.radius == 0 && (two_way || options.round_corners))
+    limits.radius = default_radius_in_spacings * options.spacing;
   finish_curve(linker, normals, plan, limits,
                {.radius_first = options.min_radius > 0, .taut = two_way && !options.metric}, progress);
 }
@@ -124,7 +124,7 @@ class Planner {
   /// metric for a cusp height they keep that below what is asked for.
   bool keeps_spacing() const {
     const bool as_they_are = options_.pattern == Pattern::contour || options_.pattern == Pattern::planar;
-    return options_.pattern == Pattern::two_way || (options_.close_gaps && !as_they_are && !options_.metric);
+    return options_.pattern == Pattern::two_way || (!as_they_are && !options_.metric);
   }
 
   void add_runs(CurveAssembly& assembly) {

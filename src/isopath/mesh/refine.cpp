@@ -165,6 +165,28 @@ RefinedMesh refine(const TriangleMesh& mesh, const std::function<bool(const Refi
   return refiner.finish();
 }
 
+void RefinementTrail::add(const TriangleMesh& mesh, const RefinedMesh& refined) {
+  std::vector<Part> parts(refined.old_face.size());
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    const Index old = refined.old_face[f];
+    parts[f].face = old;
+    for (int i = 0; i < 3; ++i) {
+      const Index v = refined.mesh.triangle(static_cast<Index>(f))[i];
+      const SurfacePoint corner = on_first({old, express_in(mesh, refined.on_old[v], old).barycentric});
+      parts[f].face = corner.face;
+      parts[f].corners[i] = corner.barycentric;
+    }
+  }
+  parts_ = std::move(parts);
+}
+
+SurfacePoint RefinementTrail::on_first(const SurfacePoint& point) const {
+  if (parts_.empty() || !point.valid()) return point;
+  const Part& part = parts_[point.face];
+  const Vec3& b = point.barycentric;
+  return {part.face, b[0] * part.corners[0] + b[1] * part.corners[1] + b[2] * part.corners[2]};
+}
+
 RefinedMesh split_uniformly(const TriangleMesh& mesh) {
   return refine(
       mesh, [](const RefineTriangle&) { return true; }, 1);

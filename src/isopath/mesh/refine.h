@@ -33,6 +33,23 @@ struct RefinedMesh {
 RefinedMesh refine(const TriangleMesh& mesh, const std::function<bool(const RefineTriangle&)>& wants_split,
                    int max_levels);
 
+/// Where the faces of a mesh that was made finer step by step lie on the one it was made from.
+class RefinementTrail {
+ public:
+  /// One more step: from the mesh so far, which is the first one at the first step.
+  void add(const TriangleMesh& mesh, const RefinedMesh& refined);
+  /// A point of the last mesh, on the first one. Points that share a face there share one here. Without steps the point
+  /// itself; an invalid point stays invalid.
+  SurfacePoint on_first(const SurfacePoint& point) const;
+
+ private:
+  struct Part {
+    Index face;
+    std::array<Vec3, 3> corners;  // barycentric in the face
+  };
+  std::vector<Part> parts_;
+};
+
 /// Every triangle split 1-to-4, once.
 RefinedMesh split_uniformly(const TriangleMesh& mesh);
 

@@ -9,75 +9,119 @@
 #include "isopath/impact/gap_repair.h"
 #include "isopath/impact/ridge_passes.h"
 #include "isopath/mesh/normals.h"
+#include "isopath/mesh/surface_walk.h"
 #include "isopath/plan/level_density.h"
 #include "isopath/plan/path_figures.h"
 
 namespace isopath {
 namespace {
 
+using Ridges = std::vector<std::vector<SurfacePoint>>;
+
 constexpr double lift_over_spacing = 20;
 /// Whoever asks for smoothing would rather go farther than stop.
 constexpr double corner_over_spacing = 5;
 /// Rounds of planning and measuring; each comes closer.
 constexpr int most_rounds = 3;
-/// Gaps are looked at in the vertices only: between them they may be this much wider.
-constexpr double margin = 0.97;
+/// Gaps that levels or a pass along a ridge are there for, in spacings; what is less wide is left to bumps.
+constexpr double wide = 1.15;
+/// How far the curve may be moved when it is brought to the part's own mesh.
+constexpr double chord_over_spacing = 1e-3;
+/// Closing a draft's gaps adds so much to its length; one that could not save more is not worth a plan.
+constexpr double least_added = 1.03;
 /// What rounds aim at, so that a few of them get there.
-constexpr double aim = 0.94;
-/// A way whose estimated cost is that much above another one's is not worth a plan.
-constexpr double hopeless = 1.05;
+constexpr double aim = 1.08;
+
+double distance_from_chord(const Vec3& point, const Vec3& from, const Vec3& to) {
+  const Vec3 chord = to - from;
+  const double t = chord.squaredNorm() > 0 ? std::clamp(chord.dot(point - from) / chord.squaredNorm(), 0.0, 1.0) : 0;
+  return (from + t * chord - point).norm();
+}
+
+/// Leaves out points inside faces that are no farther than the tolerance from the chord without them: the finer mesh's
+/// edges put many of them there, and gaps are looked for from every move.
+void thin(const TriangleMesh& mesh, double tolerance, ImpactCurve& curve) {
+  std::vector<ImpactPoint> kept;
+  std::vector<Vec3> left_out;  // since the last one kept
+  const std::vector<ImpactPoint>& points = curve.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto is_near = [&](const Vec3& place) {
+      return distance_from_chord(place, kept.back().position, points[i + 1].position) <= tolerance;
+    };
+    const bool idle = !kept.empty() && i + 1 < points.size() && points[i].kind == points[i + 1].kind &&
+                      points[i].kind != MoveKind::lift && kept.back().at.valid() && points[i].at.valid() &&
+                      common_face(mesh, kept.back().at, points[i + 1].at) == points[i].at.face &&
+                      is_near(points[i].position) && std::all_of(left_out.begin(), left_out.end(), is_near);
+    if (idle) {
+      left_out.push_back(points[i].position);
+      continue;
+    }
+    kept.push_back(points[i]);
+    left_out.clear();
+  }
+  curve.points = std::move(kept);
+}
 
 class Chooser {
  public:
-  Chooser(const VertexField& function, const ImpactOptions& options, std::span<const std::vector<SurfacePoint>> ridges,
-          Progress& progress)
-      : mesh_(function.mesh()),
+  Chooser(const TriangleMesh& part, const VertexField& function, const FineSurface& fine, const Ridges& ridges,
+          const ImpactOptions& options, Progress& progress)
+      : part_(part),
         function_(function),
-        options_(options),
+        fine_(fine),
         ridges_(ridges),
+        options_(options),
         progress_(progress),
-        limits_{options.spacing, widest_corner_gap, options.metric},
-        allowed_(limits_.widest * options.spacing),
-        even_(function, options.metric ? *options.metric : IntrinsicGeometry(mesh_), options.spacing),
-        locator_(mesh_),
-        normals_(mesh_),
-        linker_(mesh_, locator_, progress) {
+        even_(function, fine.metric ? *fine.metric : IntrinsicGeometry(fine.mesh), options.spacing) {
     options_.close_gaps = false;
+    options_.round_corners = true;
   }
 
   RepairedPlan run() {
     RepairedPlan result;
-    ImpactPlan plan = planned(even_, options_);
-    const std::vector<double> gaps = gaps_of(plan.curve);
+    const ImpactPlan plan = draft(even_, options_.spacing);
+    std::vector<double> gaps = gaps_of(plan.curve);
     result.gap_before = widest(gaps);
-    if (result.gap_before <= margin * allowed_) {
-      loop(plan);
-      result.plan = std::move(plan);
-      return result;
+    best_ = carried(plan);
+    if (result.gap_before > wide * options_.spacing) {
+      ImpactPlan ridged = best_;
+      consider(GapRepair::bumps, std::move(best_), options_.spacing);
+      if (has_ridge_passes(ridged)) consider(GapRepair::ridge_pass, std::move(ridged), options_.spacing);
+      lower_spacing_by_level(std::move(gaps));
+      lower_spacing(plan, result.gap_before);
+      result.chosen = chosen_;
+      result.costs = std::move(costs_);
+    } else {
+      finish_plan(part_, options_, best_, progress_);
     }
-    add_detours(plan);
-    lower_spacing_by_level(gaps);
-    lower_spacing(plan, result.gap_before);
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < costs_.size(); ++i) {
-      if (costs_[i].planned && cost_of(costs_[i]) < cost_of(costs_[best])) best = i;
-    }
-    result.chosen = costs_[best].repair;
-    result.plan = std::move(plans_[best]);
-    result.costs = std::move(costs_);
+    result.plan = std::move(best_);
     return result;
   }
 
  private:
-  ImpactPlan planned(const LevelDensity& density, const ImpactOptions& options) const {
-    return plan_impact(mesh_, density.applied(), options, progress_);
+  /// Passes on the finer mesh.
+  ImpactPlan draft(const LevelDensity& density, double spacing) const {
+    ImpactOptions options = options_;
+    options.spacing = spacing;
+    options.metric = fine_.geometry();
+    return plan_impact(fine_.mesh, density.applied(), options, progress_);
   }
 
-  /// At the vertices; without windows kept, this costs a fraction of a gap report.
+  /// The same on the part's own mesh, whose triangles are as large as its shape allows.
+  ImpactPlan carried(ImpactPlan plan) const {
+    for (ImpactPoint& point : plan.curve.points) point.at = fine_.trail.on_first(point.at);
+    thin(part_, chord_over_spacing * options_.spacing, plan.curve);
+    for (Contour& contour : plan.contours) {
+      for (SurfacePoint& point : contour.points) point = fine_.trail.on_first(point);
+    }
+    return plan;
+  }
+
+  /// At the vertices of the finer mesh; without windows kept, this costs a fraction of a gap report.
   std::vector<double> gaps_of(const ImpactCurve& curve) const {
-    const SourceSet source = cover_elements(mesh_, curve);
-    std::vector<double> gaps = options_.metric ? exact_distances(mesh_, *options_.metric, source, infinity, progress_)
-                                               : exact_distances(mesh_, source, infinity, progress_);
+    const SourceSet source = cover_elements(fine_.mesh, curve);
+    std::vector<double> gaps = fine_.metric ? exact_distances(fine_.mesh, *fine_.metric, source, infinity, progress_)
+                                            : exact_distances(fine_.mesh, source, infinity, progress_);
     for (double& gap : gaps) gap *= 2;
     return gaps;
   }
@@ -95,12 +139,9 @@ class Chooser {
     return way.length + options_.spacing * (lift_over_spacing * way.lifts + corner_over_spacing * way.sharp_corners);
   }
 
-  double least_cost() const {
-    double least = infinity;
-    for (const GapRepairCost& way : costs_) {
-      if (way.planned) least = std::min(least, cost_of(way));
-    }
-    return least;
+  /// Closing the gaps of a draft only adds to it, but for its corners, which are rounded.
+  bool can_be_cheapest(const GapRepairCost& draft) const {
+    return least_added * draft.length + options_.spacing * lift_over_spacing * draft.lifts < least_;
   }
 
   GapRepairCost figures_of(GapRepair repair, const ImpactPlan& plan, double spacing) const {
@@ -109,83 +150,62 @@ class Chooser {
             .length = figures.cover_length + figures.links_length,
             .lifts = figures.lifts,
             .sharp_corners = figures.sharp_corners,
-            .spacing = spacing};
+            .spacing = spacing,
+            .planned = false};
   }
 
-  void add(GapRepair repair, ImpactPlan plan, double spacing) {
-    costs_.push_back(figures_of(repair, plan, spacing));
-    plans_.push_back(std::move(plan));
+  /// Closes the gaps of a draft on the part's mesh, unless it costs more than another way already.
+  void consider(GapRepair repair, ImpactPlan plan, double spacing) {
+    GapRepairCost& way = costs_.emplace_back(figures_of(repair, plan, spacing));
+    if (!can_be_cheapest(way)) return;
+    finish_plan(part_, options_, plan, progress_);
+    way = figures_of(repair, plan, spacing);
+    way.planned = true;
+    if (cost_of(way) >= least_) return;
+    least_ = cost_of(way);
+    chosen_ = repair;
+    best_ = std::move(plan);
   }
 
-  void loop(ImpactPlan& plan) const {
-    progress_.stage("wide gaps");
-    close_wide_gaps(linker_, normals_, plan.curve, limits_, progress_);
-  }
-
-  void add_detours(const ImpactPlan& base) {
-    ImpactPlan looped = base;
-    loop(looped);
-    add(GapRepair::bumps, std::move(looped), options_.spacing);
-    ImpactPlan ridged = base;
-    if (add_ridge_passes(linker_, normals_, ridges_, ridged.curve, limits_, progress_) == 0) return;
-    loop(ridged);
-    add(GapRepair::ridge_pass, std::move(ridged), options_.spacing);
+  bool has_ridge_passes(ImpactPlan& plan) const {
+    const SurfaceLocator locator(part_);
+    const SmoothNormals normals(part_);
+    const SurfaceLinker linker(part_, locator, progress_);
+    const GapLimits limits{.spacing = options_.spacing, .widest = wide, .metric = options_.metric};
+    return add_ridge_passes(linker, normals, ridges_, plan.curve, limits, progress_) > 0;
   }
 
   void lower_spacing_by_level(std::vector<double> gaps) {
     LevelDensity density = even_;
     ImpactPlan plan;
-    for (int round = 0; round < most_rounds && widest(gaps) > margin * allowed_; ++round) {
-      if (!density.raise(gaps, aim * allowed_)) break;
-      plan = planned(density, options_);
-      GapRepairCost way = figures_of(GapRepair::levels, plan, options_.spacing);
-      if (cost_of(way) > hopeless * least_cost()) {
-        way.planned = false;
-        costs_.push_back(way);
-        plans_.emplace_back();
-        return;
-      }
-      gaps = gaps_of(plan.curve);
+    for (int round = 0; round < most_rounds && widest(gaps) > wide * options_.spacing; ++round) {
+      if (!density.raise(gaps, aim * options_.spacing)) break;
+      plan = draft(density, options_.spacing);
+      if (!can_be_cheapest(figures_of(GapRepair::levels, plan, options_.spacing))) break;
+      if (round + 1 < most_rounds) gaps = gaps_of(plan.curve);
     }
-    loop(plan);
-    add(GapRepair::levels, std::move(plan), options_.spacing);
+    if (!plan.curve.points.empty()) consider(GapRepair::levels, carried(std::move(plan)), options_.spacing);
   }
 
-  /// Gaps go with the spacing where they come from corners; from tops they go with its root, which takes rounds.
   void lower_spacing(const ImpactPlan& base, double gap) {
-    const double least = least_cost();
-    GapRepairCost way = figures_of(GapRepair::spacing, base, options_.spacing);
-    way.planned = false;
-    ImpactPlan plan;
-    for (int round = 0; round < most_rounds && gap > margin * allowed_; ++round) {
-      const double factor = margin * allowed_ / gap;
-      way.spacing *= factor;
-      way.length /= factor;
-      if (cost_of(way) > hopeless * least) break;
-      ImpactOptions closer = options_;
-      closer.spacing = way.spacing;
-      plan = planned(even_, closer);
-      gap = widest(gaps_of(plan.curve));
-      way = figures_of(GapRepair::spacing, plan, way.spacing);
-      way.planned = gap <= margin * allowed_;
-    }
+    const double factor = aim * options_.spacing / gap;
+    GapRepairCost way = figures_of(GapRepair::spacing, base, factor * options_.spacing);
+    way.length /= factor;
+    if (can_be_cheapest(way)) return consider(way.repair, carried(draft(even_, way.spacing)), way.spacing);
     costs_.push_back(way);
-    plans_.push_back(std::move(plan));
   }
 
-  const TriangleMesh& mesh_;
+  const TriangleMesh& part_;
   const VertexField& function_;
+  const FineSurface& fine_;
+  const Ridges& ridges_;
   ImpactOptions options_;
-  std::span<const std::vector<SurfacePoint>> ridges_;
   Progress& progress_;
-  GapLimits limits_;
-  double allowed_;
   LevelDensity even_;
-  SurfaceLocator locator_;
-  SmoothNormals normals_;
-  SurfaceLinker linker_;
   std::vector<GapRepairCost> costs_;
-  std::vector<ImpactPlan> plans_;
+  double least_ = infinity;
+  GapRepair chosen_ = GapRepair::bumps;
+  ImpactPlan best_;
 };
 
 }  // namespace
@@ -204,10 +224,11 @@ std::string_view name_of(GapRepair repair) {
   return "";
 }
 
-RepairedPlan plan_with_repair(const VertexField& function, const ImpactOptions& options,
-                              std::span<const std::vector<SurfacePoint>> ridges, Progress& progress) {
+RepairedPlan plan_with_repair(const TriangleMesh& part, const VertexField& function, const FineSurface& fine,
+                              const std::vector<std::vector<SurfacePoint>>& ridges, const ImpactOptions& options,
+                              Progress& progress) {
   options.validate();
-  return Chooser(function, options, ridges, progress).run();
+  return Chooser(part, function, fine, ridges, options, progress).run();
 }
 
 }  // namespace isopath

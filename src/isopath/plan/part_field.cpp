@@ -21,35 +21,37 @@ AutoLoops loops_for(const Job& job) {
   return job.pattern == Pattern::two_way && !form_of(job.blend) ? AutoLoops::longest : AutoLoops::all;
 }
 
-ExactField distances_on(const Part& part, const Job& job, const IntrinsicGeometry* metric, AutoLoops loops,
-                        double accuracy, Progress& progress) {
-  const SourceSet sources = make_sources(part.mesh, job.sources, part.vertex_of_file_vertex, progress, loops);
+/// On the part's mesh or a finer one.
+ExactField distances_on(const TriangleMesh& mesh, const PlanResult& result, const IntrinsicGeometry* metric,
+                        AutoLoops loops, double accuracy, Progress& progress) {
+  const SourceSet sources = make_sources(mesh, result.job.sources, result.part.vertex_of_file_vertex, progress, loops);
   const ExactFieldOptions options{.accuracy = accuracy, .many_questions = true};
-  return metric ? ExactField::compute(part.mesh, *metric, sources, options, progress)
-                : ExactField::compute(part.mesh, sources, options, progress);
+  return metric ? ExactField::compute(mesh, *metric, sources, options, progress)
+                : ExactField::compute(mesh, sources, options, progress);
 }
 
-/// Puts a finer mesh of the same surface in the part's place, and the metric's lengths on it.
-void refine_part(RefinedMesh refined, Part& part, std::optional<IntrinsicGeometry>& metric) {
-  std::vector<double> lengths;
-  if (metric) lengths = lengths_in(part.mesh, *metric, refined);
-  part.mesh = std::move(refined.mesh);
-  if (metric) metric.emplace(part.mesh, lengths);
-}
-
-/// The smoothed distances, on a part that is made fine enough for them. The field of the part as it is must be exact,
-/// for the medial axis.
-PartField smoothed_field(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
+/// The smoothed distances, on a mesh that is fine enough for them. The field must be exact, for the medial axis.
+PartField smoothed_field(const PlanResult& result, const IntrinsicGeometry* metric, Progress& progress) {
   const double width = result.job.smooth;
-  refine_part(refine_for_smoothing(result.part.mesh, result.spacing, width), result.part, metric);
-  const IntrinsicGeometry* geometry = metric ? &*metric : nullptr;
-  FieldSamples samples = sample_for_smoothing(
-      distances_on(result.part, result.job, geometry, loops_for(result.job), 0, progress), result.spacing, progress);
-  refine_part(std::move(samples.refined), result.part, metric);
-  geometry = metric ? &*metric : nullptr;
-  std::vector<double> values = smoothed_distances(result.part.mesh, geometry, samples.distances, width, progress);
-  auto function = std::make_unique<VertexField>(result.part.mesh, values);
-  return {.function = std::move(function), .at_vertices = std::move(values), .ridges = std::move(samples.ridges)};
+  PartField field;
+  field.fine = std::make_unique<FineSurface>();
+  FineSurface& fine = *field.fine;
+  fine.mesh = result.part.mesh;
+  if (metric) fine.metric = *metric;
+  fine.refine(refine_for_smoothing(fine.mesh, result.spacing, width));
+  FieldSamples samples;
+  {
+    const ExactField exact = distances_on(fine.mesh, result, fine.geometry(), loops_for(result.job), 0, progress);
+    samples = sample_for_smoothing(exact, result.spacing, progress);
+  }
+  field.ridges = std::move(samples.ridges);
+  for (std::vector<SurfacePoint>& ridge : field.ridges) {
+    for (SurfacePoint& point : ridge) point = fine.trail.on_first(point);
+  }
+  fine.refine(std::move(samples.refined));
+  field.at_vertices = smoothed_distances(fine.mesh, fine.geometry(), samples.distances, width, progress);
+  field.function = std::make_unique<VertexField>(fine.mesh, field.at_vertices);
+  return field;
 }
 
 /// Cuts the part open where nested levels need it; its field is then that of the part cut open. False where there are
@@ -71,8 +73,7 @@ bool open_for_nesting(PlanResult& result, PartField& field, Progress& progress) 
             "ways between them");
   field.function.reset();
   mesh = *std::move(opened);
-  std::optional<IntrinsicGeometry> in_space;
-  field = field_of(result, in_space, progress);
+  field = field_of(result, nullptr, progress);
   return true;
 }
 
@@ -85,12 +86,12 @@ Vec3 direction_of_planes(const Job& job, const TriangleMesh& mesh) {
 PartField exact_field_of(const PlanResult& result, const IntrinsicGeometry* metric, AutoLoops loops,
                          Progress& progress) {
   auto exact = std::make_unique<ExactField>(
-      distances_on(result.part, result.job, metric, loops, field_accuracy * result.part.mesh.size(), progress));
+      distances_on(result.part.mesh, result, metric, loops, field_accuracy * result.part.mesh.size(), progress));
   std::vector<double> values(exact->vertex_distances().begin(), exact->vertex_distances().end());
   return {std::move(exact), std::move(values)};
 }
 
-PartField field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress) {
+PartField field_of(const PlanResult& result, const IntrinsicGeometry* metric, Progress& progress) {
   progress.stage("distance field");
   const TriangleMesh& mesh = result.part.mesh;
   if (result.job.pattern == Pattern::planar) {
@@ -99,18 +100,17 @@ PartField field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric,
     return {std::move(height), std::move(values)};
   }
   if (result.job.smooth > 0) return smoothed_field(result, metric, progress);
-  return exact_field_of(result, metric ? &*metric : nullptr, loops_for(result.job), progress);
+  return exact_field_of(result, metric, loops_for(result.job), progress);
 }
 
 PartField nested_field_on(TriangleMesh fine, BlendForm form, PlanResult& result, Progress& progress) {
   const double spacing = result.spacing;
   const double radius = result.job.min_radius > 0 ? result.job.min_radius : default_radius_in_spacings * spacing;
   TriangleMesh& mesh = result.part.mesh;
-  std::optional<IntrinsicGeometry> in_space;
   NestedField nested;
   for (int round = 0; round < 2; ++round) {
     mesh = std::move(fine);
-    const PartField field = field_of(result, in_space, progress);
+    const PartField field = field_of(result, nullptr, progress);
     nested = nested_field(form, static_cast<const ExactField&>(*field.function), spacing, radius, progress);
     fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
     if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it

@@ -14,6 +14,7 @@
 #include "isopath/plan/job.h"
 #include "isopath/plan/make_sources.h"
 #include "isopath/plan/plan_result.h"
+#include "isopath/plan/smooth_part.h"
 
 namespace isopath {
 
@@ -23,10 +24,14 @@ inline constexpr double field_accuracy = 5e-7;
 
 /// The function whose isolines the passes on a part follow.
 struct PartField {
-  std::unique_ptr<SurfaceFunction> function;           ///< on the part's mesh, which must stay where it is
-  std::vector<double> at_vertices;                     ///< mm; infinity where unreached
-  double spacing = 0;                                  ///< of nested levels; 0 where the function is not made for such
-  std::vector<std::vector<SurfacePoint>> ridges = {};  ///< see FieldSamples; none where nothing was smoothed
+  std::unique_ptr<SurfaceFunction> function;  ///< on the part's mesh, or a finer one; these must stay where they are
+  std::vector<double> at_vertices;            ///< of the function's mesh, mm; infinity where unreached
+  double spacing = 0;                         ///< of nested levels; 0 where the function is not made for such
+  std::unique_ptr<FineSurface> fine = {};     ///< null where the function's mesh is the part's
+  std::vector<std::vector<SurfacePoint>> ridges = {};  ///< see FieldSamples, on the part's mesh
+
+  /// The mesh of the function, on this part.
+  const TriangleMesh& mesh_of(const Part& part) const { return fine ? fine->mesh : part.mesh; }
 };
 
 /// The direction that the job names for planes, or the one that suits the part.
@@ -37,9 +42,8 @@ Vec3 direction_of_planes(const Job& job, const TriangleMesh& mesh);
 PartField exact_field_of(const PlanResult& result, const IntrinsicGeometry* metric, AutoLoops loops,
                          Progress& progress);
 
-/// What the job asks for: distances, smoothed ones, or the height for planes. For smoothed ones the part gets a finer
-/// mesh, and the metric its lengths on it. Throws as `exact_field_of`.
-PartField field_of(PlanResult& result, std::optional<IntrinsicGeometry>& metric, Progress& progress);
+/// What the job asks for: distances, smoothed ones, or the height for planes. Throws as `exact_field_of`.
+PartField field_of(const PlanResult& result, const IntrinsicGeometry* metric, Progress& progress);
 
 /// The function whose levels are nested closed curves (contour/blend.h), in the place of the part's exact field, on a
 /// mesh made fine enough for it. A part with holes is cut open; one with handles has no such levels: it keeps the

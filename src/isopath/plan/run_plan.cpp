@@ -62,6 +62,13 @@ void check_against_size(const Job& job, double spacing, double size) {
                  .value = fmt::format("{:.6g} mm, the part measures {:.6g} mm", spacing, size),
                  .advice = "give a smaller spacing, or the unit of the mesh file when that is not mm"});
   }
+  if (job.smooth > 0 && job.smooth < least_smoothing_over_spacing * spacing) {
+    throw Error(ErrorCode::bad_usage, "smoothing over so little rounds no corner that the tool would notice",
+                {.element = "smooth",
+                 .value = fmt::format("{:.6g} mm, limit {:.6g} mm: a quarter of the spacing", job.smooth,
+                                      least_smoothing_over_spacing * spacing),
+                 .advice = "give a spacing or two, or leave it out"});
+  }
   if (job.clearance > most_clearance_over_size * size) {
     throw Error(ErrorCode::bad_usage, "lifts this high leave the part out of sight",
                 {.element = "clearance",
@@ -202,13 +209,13 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (mesh.n_components() == 1) check_reach(mesh, std::vector<double>(mesh.n_vertices(), 0.0), job);
   std::optional<FittedPart> fitted;
   if (job.scallop > 0) fitted.emplace(mesh, result.spacing);
-  std::optional<IntrinsicGeometry> warped = warp_for_scallop(fitted, result, progress);
+  const std::optional<IntrinsicGeometry> warped = warp_for_scallop(fitted, result, progress);
+  const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
   if (job.partition.by != PartitionBy::none) {
     plan_by_patches(result, clock, progress);
   } else {
-    plan_whole(result, warped, clock, progress);
+    plan_whole(result, metric, clock, progress);
   }
-  const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
   std::optional<CurvedSurface> curved;
   if (fitted) {
     curved = surface_over(*fitted, mesh);

@@ -13,8 +13,6 @@ namespace isopath {
 namespace {
 
 constexpr double edges_over_length = 0.5;
-/// Corners rounded by less than that are corners to the tool.
-constexpr double least_width_over_spacing = 0.25;
 /// As many triangles as a large part has anyway.
 constexpr Index most_smoothed_triangles = 600000;
 constexpr double interpolation_over_spacing = 0.05;
@@ -24,58 +22,10 @@ constexpr double width_over_distance = 0.5;
 /// Twigs of the medial axis shorter than this times the clearance are no ridges.
 constexpr double shortest_twig = 0.5;
 
-/// Finds points of the old mesh on the refined one.
-class OnRefined {
- public:
-  OnRefined(const TriangleMesh& mesh, const RefinedMesh& refined)
-      : mesh_(mesh), refined_(refined), first_(static_cast<std::size_t>(mesh.n_faces()) + 1, 0) {
-    for (const Index old : refined.old_face) ++first_[old + 1];
-    for (std::size_t f = 1; f < first_.size(); ++f) first_[f] += first_[f - 1];
-    parts_.resize(refined.old_face.size());
-    std::vector<Index> next(first_.begin(), first_.end() - 1);
-    for (Index f = 0; f < refined.mesh.n_faces(); ++f) parts_[next[refined.old_face[f]]++] = f;
-  }
-
-  /// The part of the point's face that it lies deepest in.
-  SurfacePoint at(const SurfacePoint& point) const {
-    SurfacePoint best;
-    double depth = -infinity;
-    for (Index k = first_[point.face]; k < first_[point.face + 1]; ++k) {
-      const Vec3 weights = weights_in(parts_[k], point);
-      if (!(weights.minCoeff() > depth)) continue;
-      depth = weights.minCoeff();
-      best = {parts_[k], weights};
-    }
-    best.barycentric = best.barycentric.cwiseMax(0.0);
-    best.barycentric /= best.barycentric.sum();
-    return best;
-  }
-
- private:
-  /// Barycentric coordinates in a part, from those in the whole face: the same combination of the part's corners.
-  Vec3 weights_in(Index part, const SurfacePoint& point) const {
-    Vec3 corner[3];
-    for (int i = 0; i < 3; ++i) {
-      const SurfacePoint& old = refined_.on_old[refined_.mesh.triangle(part)[i]];
-      corner[i] = express_in(mesh_, old, point.face).barycentric;
-    }
-    const double whole = corner[0].dot(corner[1].cross(corner[2]));
-    const Vec3& p = point.barycentric;
-    return Vec3(p.dot(corner[1].cross(corner[2])), p.dot(corner[2].cross(corner[0])),
-                p.dot(corner[0].cross(corner[1]))) /
-           whole;
-  }
-
-  const TriangleMesh& mesh_;
-  const RefinedMesh& refined_;
-  std::vector<Index> first_;
-  std::vector<Index> parts_;
-};
-
 }  // namespace
 
 RefinedMesh refine_for_smoothing(const TriangleMesh& mesh, double spacing, double width) {
-  const double length = std::clamp(width, least_width_over_spacing * spacing, spacing);
+  const double length = std::clamp(width, least_smoothing_over_spacing * spacing, spacing);
   return split_long_edges(mesh, edges_over_length * length, std::max(most_smoothed_triangles, mesh.n_faces()));
 }
 
@@ -93,6 +43,14 @@ std::vector<double> lengths_in(const TriangleMesh& mesh, const IntrinsicGeometry
   return lengths;
 }
 
+void FineSurface::refine(RefinedMesh refined) {
+  trail.add(mesh, refined);
+  std::vector<double> lengths;
+  if (metric) lengths = lengths_in(mesh, *metric, refined);
+  mesh = std::move(refined.mesh);
+  if (metric) metric.emplace(mesh, lengths);
+}
+
 FieldSamples sample_for_smoothing(const ExactField& field, double spacing, Progress& progress) {
   FieldSamples samples;
   RefinedField refined = refine_for_field(
@@ -100,11 +58,10 @@ FieldSamples sample_for_smoothing(const ExactField& field, double spacing, Progr
   samples.refined = std::move(refined.refined);
   samples.distances = std::move(refined.value);
   progress.stage("medial axis");
-  const OnRefined on_refined(field.mesh(), samples.refined);
   const BisectorGraph axis = medial_axis(field, {.prune = shortest_twig, .chord_tolerance = 0.01 * spacing}, progress);
   for (const BisectorGraph::Arc& arc : axis.arcs) {
     std::vector<SurfacePoint>& ridge = samples.ridges.emplace_back();
-    for (const BisectorPoint& point : arc.points) ridge.push_back(on_refined.at(point.point));
+    for (const BisectorPoint& point : arc.points) ridge.push_back(point.point);
   }
   return samples;
 }

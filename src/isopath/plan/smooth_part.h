@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "isopath/core/progress.h"
@@ -11,6 +12,9 @@
 
 namespace isopath {
 
+/// Corners rounded by less than that are corners to the tool, and a mesh fine enough for it would be huge.
+inline constexpr double least_smoothing_over_spacing = 0.25;
+
 /// The part with triangles small enough to smooth a field on by `width` and to plan passes on, mm: the longest edges
 /// are halved until they are half as long as the smaller of the two, and no shorter than an eighth of the spacing.
 RefinedMesh refine_for_smoothing(const TriangleMesh& mesh, double spacing, double width);
@@ -18,12 +22,22 @@ RefinedMesh refine_for_smoothing(const TriangleMesh& mesh, double spacing, doubl
 /// The lengths of a finer mesh's edges in a metric of the old mesh, for IntrinsicGeometry.
 std::vector<double> lengths_in(const TriangleMesh& mesh, const IntrinsicGeometry& metric, const RefinedMesh& refined);
 
+/// A finer mesh of a part, for functions that are given at vertices.
+struct FineSurface {
+  TriangleMesh mesh;
+  std::optional<IntrinsicGeometry> metric = {};  ///< none: lengths in space
+  RefinementTrail trail = {};                    ///< to the part's own mesh
+
+  /// Makes it finer still, and the metric with it.
+  void refine(RefinedMesh refined);
+  const IntrinsicGeometry* geometry() const { return metric ? &*metric : nullptr; }
+};
+
 /// A mesh that a field's values at the vertices represent well, and these values.
 struct FieldSamples {
   RefinedMesh refined;
   std::vector<double> distances;  ///< at its vertices, mm; infinity where unreached
-  /// The medial axis of the field's sources, its arcs as curves on the refined mesh: where smoothing opens gaps.
-  /// Consecutive points may be several faces apart.
+  /// The medial axis of the field's sources, its arcs as curves on the field's mesh: where smoothing opens gaps.
   std::vector<std::vector<SurfacePoint>> ridges;
 };
 

@@ -40,8 +40,8 @@ ImpactOptions options_of(const PlanResult& result, const IntrinsicGeometry* metr
 
 /// The impact curve, with the pattern the job names or one that suits the part.
 void plan_curve(PlanResult& result, PartField& field, const IntrinsicGeometry* metric, Progress& progress) {
-  const TriangleMesh& mesh = result.part.mesh;
-  ImpactOptions options = options_of(result, metric);
+  const TriangleMesh& mesh = field.mesh_of(result.part);
+  ImpactOptions options = options_of(result, field.fine ? field.fine->geometry() : metric);
   const bool smooth = result.job.smooth > 0;
   if (form_of(result.job.blend)) {
     const bool is_spiral = result.pattern == Pattern::spiral || result.pattern == Pattern::double_spiral;
@@ -66,8 +66,9 @@ void plan_curve(PlanResult& result, PartField& field, const IntrinsicGeometry* m
   }
   result.pattern = options.pattern;
   if (smooth) {
-    RepairedPlan repaired =
-        plan_with_repair(static_cast<const VertexField&>(*field.function), options, field.ridges, progress);
+    options.metric = metric;
+    RepairedPlan repaired = plan_with_repair(result.part.mesh, static_cast<const VertexField&>(*field.function),
+                                             *field.fine, field.ridges, options, progress);
     result.impact = std::move(repaired.plan);
     result.smoothing = {repaired.gap_before, repaired.chosen, std::move(repaired.costs)};
   }
@@ -139,9 +140,15 @@ void choose_spiral(PlanResult& result, PartField& field, Progress& progress) {
   take(*std::move(blended), result, field);
 }
 
+/// A picture of the finer mesh, as one of the part.
+void carry_to_part(const RefinementTrail& trail, RefinedMesh& shown) {
+  for (SurfacePoint& point : shown.on_old) point = trail.on_first(point);
+  for (Index& face : shown.old_face) face = trail.on_first({face, Vec3::UnitX()}).face;
+}
+
 }  // namespace
 
-void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, StageClock& clock, Progress& progress) {
+void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress) {
   const TriangleMesh& mesh = result.part.mesh;
   PartField field = field_of(result, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
@@ -164,22 +171,25 @@ void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, St
       choose_spiral(result, field, progress);
     }
   }
+  const TriangleMesh& shown = field.mesh_of(result.part);
   const bool is_planned = !result.impact.curve.points.empty();
 
   // a curve is made of one thing after the other: a second processor gets the picture ready meanwhile
   side_by_side(
       [&] {
-        if (!is_planned) plan_curve(result, field, metric ? &*metric : nullptr, progress);
+        if (!is_planned) plan_curve(result, field, metric, progress);
       },
       [&] {
-        if (result.job.report) result.display.refined = refine_for_display(mesh, result.spacing);
+        if (result.job.report) result.display.refined = refine_for_display(shown, result.spacing);
       });
   if (too_fine > 0 && result.pattern == Pattern::spiral) result.spiral.emplace().too_fine = too_fine;
-  result.distances = std::move(field.at_vertices);
   if (result.job.report) {
     DisplaySurface& display = result.display;
-    display.distances = values_at_vertices(*field.function, display.refined, result.distances, progress);
+    display.distances = values_at_vertices(*field.function, display.refined, field.at_vertices, progress);
+    if (field.fine) carry_to_part(field.fine->trail, display.refined);
   }
+  result.distances = std::move(field.at_vertices);
+  result.distances.resize(mesh.n_vertices());  // finer meshes only add vertices
   // the field ends here: its windows are the largest thing in memory, and the gap needs windows of its own
   field.function.reset();
   clock.ends("impact");

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "isopath/core/progress.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/plan/plan_result.h"
@@ -10,8 +8,8 @@
 namespace isopath {
 
 /// Plans all of the part by one field: from `result.job`, `part` and `spacing` to the pattern, the impact curve, the
-/// distances and the surface to show. The part's mesh may become a finer one, and the metric that of it; none: in
-/// space. Throws Error(bad_usage) for a spacing of too many passes, Error(no_plan) with the reason, Error(cancelled).
-void plan_whole(PlanResult& result, std::optional<IntrinsicGeometry>& metric, StageClock& clock, Progress& progress);
+/// distances and the surface to show. The part's mesh may become a finer one. Null metric: in space. Throws
+/// Error(bad_usage) for a spacing of too many passes, Error(no_plan) with the reason, Error(cancelled).
+void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress);
 
 }  // namespace isopath
