@@ -20,7 +20,7 @@ namespace {
 ExactField boundary_field(const TriangleMesh& mesh) { return ExactField::compute(mesh, boundary_source(mesh)); }
 
 TriangleMesh fine(const TriangleMesh& mesh, double spacing) {
-  return refine_for_blend(mesh, boundary_field(mesh), spacing);
+  return refine_for_blend(mesh, boundary_field(mesh), spacing).mesh;
 }
 
 /// Two squares of 8, joined by a neck 4 wide and 6 long.
@@ -357,7 +357,7 @@ TEST(RefineForBlend, LeavesNoLongEdges) {
   // a function of slope 5 passes a spacing in half an edge
   std::vector<double> steep;
   for (Index v = 0; v < result.n_vertices(); ++v) steep.push_back(5 * result.position(v).x());
-  const TriangleMesh finer = refine_for_levels(result, steep, 1);
+  const TriangleMesh finer = refine_for_levels(result, steep, 1).mesh;
   for (Index e = 0; e < finer.n_edges(); ++e) {
     const Index h = finer.halfedge_of(e);
     EXPECT_LE(5 * std::abs(finer.position(finer.from(h)).x() - finer.position(finer.to(h)).x()), 0.8 + 1e-9);

@@ -23,7 +23,7 @@ struct Part {
   std::vector<double> values;
 
   Part(const TriangleMesh& coarse, double asked) {
-    mesh = refine_for_blend(coarse, ExactField::compute(coarse, boundary_source(coarse)), asked);
+    mesh = refine_for_blend(coarse, ExactField::compute(coarse, boundary_source(coarse)), asked).mesh;
     BlendedField blended = blend(ExactField::compute(mesh, boundary_source(mesh)),
                                  {.spacing = asked, .radius = default_radius_in_spacings * asked});
     spacing = blended.spacing;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/surface_walk.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
@@ -128,6 +129,32 @@ TEST(SplitLongEdges, StopsAtTheBoundWithEdgesAboutAsLong) {
   }
   EXPECT_EQ(split_long_edges(mesh, 1e-6, 0).mesh.n_faces(), mesh.n_faces());
   EXPECT_THROW(split_long_edges(mesh, 0, 100), Error);
+}
+
+TEST(RefinementTrail, LeadsBackToTheSamePlacesAndSharedFaces) {
+  test::Rng rng(5);
+  const TriangleMesh mesh = test::torus(6, 5, 4, 1);
+  TriangleMesh finer = mesh;
+  RefinementTrail trail;
+  EXPECT_EQ(trail.on_first({2, Vec3::UnitY()}).face, 2);
+  for (const double longest : {1.5, 0.7, 0.4}) {
+    RefinedMesh refined = split_long_edges(finer, longest, 100000);
+    trail.add(finer, refined);
+    finer = std::move(refined.mesh);
+  }
+  EXPECT_FALSE(trail.on_first({}).valid());
+  for (int n = 0; n < 1000; ++n) {
+    const SurfacePoint a = test::random_supported_point(rng, finer);
+    const SurfacePoint on_first = trail.on_first(a);
+    EXPECT_NEAR((position_of(mesh, on_first) - position_of(finer, a)).norm(), 0, 1e-13 * mesh.size());
+    // the other points of the faces around it, which may lie beyond an edge of the old mesh
+    const Support support = support_of(finer, a);
+    for (int i = 0; i < 3 && support.kind == Support::Kind::edge; ++i) {
+      const Index twin = finer.twin(support.index);
+      for (const Index face : {TriangleMesh::face_of(support.index), TriangleMesh::face_of(twin)})
+        EXPECT_NE(common_face(mesh, on_first, trail.on_first({face, Vec3::Unit(i)})), no_index) << n;
+    }
+  }
 }
 
 TEST(Refine, WithoutWishesNothingChanges) {

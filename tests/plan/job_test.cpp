@@ -178,7 +178,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("blend: least\npattern: meander\n"), {"blend", "meander", "double-spiral"});
   expect_all(complaint("blend: least\nscallop: 0.1\n"), {"blend", "scallop"});
   expect_all(complaint("pattern: double-spiral\nscallop: 0.1\n"), {"pattern", "scallop"});
-  expect_all(complaint("blend: least\npartition:\n  by: medial\n"), {"partition", "medial"});
+  expect_all(complaint("blend: least\nsmooth: 2\n"), {"smooth", "no corners left"});
   expect_all(complaint("circle_radius: -2\n"), {"line 2", "circle_radius", "-2", "at least 0"});
   expect_all(complaint("pattern: trochoidal\nscallop: 0.1\n"), {"scallop", "circles"});
   expect_all(complaint("pattern: trochoidal\nsmooth: 3\n"), {"smooth", "circles"});
@@ -187,8 +187,6 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("partition:\n  unevenness: 1\n"), {"line 3", "partition.unevenness", "1", "above 1"});
   expect_all(complaint("partition:\n  crease_angle: 4\n"), {"crease_angle", "4", "below π"});
   expect_all(complaint("sources: [boundary]\npartition:\n  by: medial\n"), {"partition", "medial", "'boundary'"});
-  expect_all(complaint("scallop: 0.1\npartition:\n  by: both\n"), {"partition", "both", "scallop"});
-  expect_all(complaint("smooth: 2\npartition:\n  by: both\n"), {"partition", "both", "smoothing"});
   expect_all(complaint("tool: 5\n"), {"line 2", "tool", "'5'", "mapping"});
   expect_all(complaint("tool:\n  process: knit\n"), {"line 3", "tool.process", "'knit'", "spray, mill, grind"});
   expect_all(complaint("tool:\n  diameter: 3\n"), {"line 3", "tool.diameter", "unknown key", "ball_diameter"});

@@ -57,10 +57,10 @@ TEST(NestedPlan, AnAnnulusOfUnevenWidthIsCutOpen) {
   // 2 wide on one side of the hole, 10 on the other: levels from loop to loop would be five times as dense there
   const TriangleMesh mesh = test::planar_cells(16, 8, [](int i, int j) { return i < 2 || i >= 6 || j < 2 || j >= 6; });
   QuietProgress quiet(Progress::none());
-  const std::optional<TriangleMesh> opened = opened_annulus(mesh, 0.5, quiet);
+  const std::optional<RefinedMesh> opened = opened_annulus(mesh, 0.5, quiet);
   ASSERT_TRUE(opened);
-  EXPECT_EQ(nested_shape_of(*opened), NestedShape::disc);
-  EXPECT_NEAR(opened->area(), mesh.area(), 1e-9);
+  EXPECT_EQ(nested_shape_of(opened->mesh), NestedShape::disc);
+  EXPECT_NEAR(opened->mesh.area(), mesh.area(), 1e-9);
   EXPECT_FALSE(opened_annulus(test::open_cylinder(24, 8, 5, 4), 0.5, quiet)) << "of even width";
 
   const PlanResult result = test::plan_spiral(mesh, Pattern::spiral, Blending::least, 0.5);
@@ -151,9 +151,10 @@ TEST(HoleBridges, AreTheShortestTreeOfLoopsAndLeaveADisc) {
 
     const auto opened = opened_holes(mesh, 1.5, Progress::none());
     ASSERT_TRUE(opened);
-    EXPECT_EQ(nested_shape_of(*opened), NestedShape::disc) << "a cycle would cut a piece off, a lack leaves a hole";
-    EXPECT_EQ(opened->n_components(), 1);
-    EXPECT_NEAR(opened->area(), mesh.area(), 1e-9);
+    EXPECT_EQ(nested_shape_of(opened->mesh), NestedShape::disc)
+        << "a cycle would cut a piece off, a lack leaves a hole";
+    EXPECT_EQ(opened->mesh.n_components(), 1);
+    EXPECT_NEAR(opened->mesh.area(), mesh.area(), 1e-9);
   }
 }
 

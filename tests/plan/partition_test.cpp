@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "isopath/mesh/surface_walk.h"
 #include "isopath/plan/patch_links.h"
 #include "isopath/plan/patch_plans.h"
+#include "isopath/plan/run_plan.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
@@ -159,7 +161,10 @@ void expect_curve(const TriangleMesh& mesh, const ImpactCurve& curve) {
 }
 
 PatchedPlan plan_parts(const Partition& parts, double spacing, std::optional<Pattern> pattern = {}) {
-  return plan_patches(parts, {.pattern = pattern, .spacing = spacing});
+  Job job;
+  job.pattern = pattern;
+  job.report = false;
+  return plan_patches(parts, job, spacing);
 }
 
 TEST(PatchPlans, CoverEverySideOfACubeInOnePiece) {
@@ -218,25 +223,55 @@ TEST(PatchPlans, ChainsKeepAllThatCovers) {
   }
 }
 
-TEST(PatchPlans, PartedSurfacesHaveTheirOwnVerticesOnBorders) {
+TEST(PatchPlans, PicturesHaveTheirOwnVerticesOnBorders) {
   const Partition parts = partition(test::cube(2, 4), 0.5, {.by = PartitionBy::creases});
-  const RefinedMesh fine = split_uniformly(parts.mesh);
-  const RefinedMesh shown = parted(fine, parts.patch_of_face);
-  EXPECT_EQ(shown.mesh.n_faces(), fine.mesh.n_faces());
-  EXPECT_EQ(shown.mesh.n_vertices(), 6 * 5 * 5) << "every side has a grid of its own";
+  const DisplaySurface shown = plan_patches(parts, Job{}, 0.5).display;
+  EXPECT_NEAR(shown.refined.mesh.area(), parts.mesh.area(), 1e-9);
   std::map<Index, Index> patch_of_vertex;
-  for (Index f = 0; f < shown.mesh.n_faces(); ++f) {
-    const Index patch = parts.patch_of_face[shown.old_face[f]];
-    for (int i = 0; i < 3; ++i) {
-      const Index v = shown.mesh.triangle(f)[i];
+  for (Index f = 0; f < shown.refined.mesh.n_faces(); ++f) {
+    const Index patch = parts.patch_of_face[shown.refined.old_face[f]];
+    for (const Index v : shown.refined.mesh.triangle(f)) {
       EXPECT_EQ(patch_of_vertex.try_emplace(v, patch).first->second, patch);
-      EXPECT_EQ(shown.mesh.position(v), fine.mesh.position(fine.mesh.triangle(f)[i]));
-      EXPECT_NEAR((position_of(parts.mesh, shown.on_old[v]) - shown.mesh.position(v)).norm(), 0, 1e-12);
+      const Vec3& place = shown.refined.mesh.position(v);
+      EXPECT_NEAR((position_of(parts.mesh, shown.refined.on_old[v]) - place).norm(), 0, 1e-12);
+      // from the middle of a side it is 2 to its border, by the largest coordinate in it
+      const Vec3 q = (place - Vec3::Constant(2)).cwiseAbs();
+      const double second = q.sum() - q.maxCoeff() - q.minCoeff();
+      EXPECT_NEAR(shown.distances[v], 2 - second, 1e-4) << place.transpose();
     }
   }
-  const PatchedPlan plan = plan_patches(parts, {.spacing = 0.5}, &shown);
-  for (Index v = 0; v < parts.mesh.n_vertices(); ++v) {
-    EXPECT_NEAR(plan.display_distances[v], plan.distances[v], 1e-9);
+}
+
+/// What a patch is planned with besides its spacing is what a part may be planned with.
+TEST(PatchPlans, MayBeSmoothedBlendedAndMeasuredByScallops) {
+  TriangleSoup soup = test::planar_grid(8, 4, 24, 12).soup();
+  for (Vec3& p : soup.positions) {
+    if (p.x() > 12) p = Vec3(12, p.y(), p.x() - 12);
+  }
+  const TriangleMesh mesh(std::move(soup));
+  struct Case {
+    const char* name;
+    double smooth;
+    double scallop;
+    Blending blend;
+  };
+  for (const Case& c : {Case{"smooth", 3, 0, Blending::automatic}, Case{"scallop", 0, 0.2, Blending::automatic},
+                        Case{"blend", 0, 0, Blending::least}, Case{"smooth and scallop", 3, 0.2, Blending::none}}) {
+    Job job;
+    job.mesh = std::filesystem::path(testing::TempDir()) / "patches_combined.off";
+    test::write_off(mesh, job.mesh);
+    job.partition.by = PartitionBy::creases;
+    job.report = false;
+    job.smooth = c.smooth;
+    job.scallop = c.scallop;
+    job.blend = c.blend;
+    if (c.scallop == 0) job.spacing = 3;
+    const PlanResult result = run_plan(job);
+    EXPECT_EQ(result.patches.size(), 2U) << c.name;
+    EXPECT_EQ(result.figures.lifts, 0) << c.name;
+    EXPECT_LE(result.gap.max, 1.05 * result.spacing) << c.name;
+    EXPECT_GT(result.gap.covered_fraction, 0.999) << c.name;
+    expect_curve(result.part.mesh, result.impact.curve);
   }
 }
 

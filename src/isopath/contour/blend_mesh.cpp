@@ -20,10 +20,10 @@ constexpr double most_levels_over_edge = 0.8;
 
 }  // namespace
 
-TriangleMesh refine_for_blend(const TriangleMesh& mesh, const SurfaceFunction& distance, double spacing,
-                              const Progress& progress) {
-  const RefinedMesh even = split_long_edges(mesh, longest_in_spacings * spacing, most_faces);
-  if (even.mesh.n_faces() >= most_faces / 2) return even.mesh;
+RefinedMesh refine_for_blend(const TriangleMesh& mesh, const SurfaceFunction& distance, double spacing,
+                             const Progress& progress) {
+  RefinedMesh even = split_long_edges(mesh, longest_in_spacings * spacing, most_faces);
+  if (even.mesh.n_faces() >= most_faces / 2) return even;
   const auto value = [&](Index face, const Vec3& b) {
     const Triangle& corners = even.mesh.triangle(face);
     Vec3 on_old = Vec3::Zero();
@@ -50,11 +50,11 @@ TriangleMesh refine_for_blend(const TriangleMesh& mesh, const SurfaceFunction& d
     return std::abs(value(triangle.face, centre) - (corner[0] + corner[1] + corner[2]) / 3) >
            error_in_spacings * spacing;
   };
-  return refine(even.mesh, is_kinked, most_levels).mesh;
+  return composed(mesh, even, refine(even.mesh, is_kinked, most_levels));
 }
 
-TriangleMesh refine_for_levels(const TriangleMesh& mesh, std::span<const double> values, double spacing,
-                               const Progress& progress) {
+RefinedMesh refine_for_levels(const TriangleMesh& mesh, std::span<const double> values, double spacing,
+                              const Progress& progress) {
   int asked = 0;
   const auto is_steep = [&](const RefineTriangle& triangle) {
     if (++asked % 4096 == 0) progress.checkpoint();
@@ -65,7 +65,7 @@ TriangleMesh refine_for_levels(const TriangleMesh& mesh, std::span<const double>
     const auto [low, high] = std::minmax_element(value.begin(), value.end());
     return *high<infinity&& * high - *low> most_levels_over_edge * spacing;
   };
-  return refine(mesh, is_steep, most_levels).mesh;
+  return refine(mesh, is_steep, most_levels);
 }
 
 }  // namespace isopath

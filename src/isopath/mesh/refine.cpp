@@ -187,6 +187,14 @@ SurfacePoint RefinementTrail::on_first(const SurfacePoint& point) const {
   return {part.face, b[0] * part.corners[0] + b[1] * part.corners[1] + b[2] * part.corners[2]};
 }
 
+RefinedMesh composed(const TriangleMesh& mesh, const RefinedMesh& first, RefinedMesh second) {
+  RefinementTrail trail;
+  trail.add(mesh, first);
+  for (SurfacePoint& point : second.on_old) point = trail.on_first(point);
+  for (Index& face : second.old_face) face = first.old_face[face];
+  return second;
+}
+
 RefinedMesh split_uniformly(const TriangleMesh& mesh) {
   return refine(
       mesh, [](const RefineTriangle&) { return true; }, 1);

@@ -50,6 +50,9 @@ class RefinementTrail {
   std::vector<Part> parts_;
 };
 
+/// A mesh that was made finer twice, in one step from the first: `second` is a finer mesh of `first.mesh`.
+RefinedMesh composed(const TriangleMesh& mesh, const RefinedMesh& first, RefinedMesh second);
+
 /// Every triangle split 1-to-4, once.
 RefinedMesh split_uniformly(const TriangleMesh& mesh);
 

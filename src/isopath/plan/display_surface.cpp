@@ -12,8 +12,8 @@ constexpr Index most_triangles = 350000;
 
 }  // namespace
 
-RefinedMesh refine_for_display(const TriangleMesh& mesh, double spacing) {
-  return split_long_edges(mesh, edges_over_spacing * spacing, most_triangles);
+RefinedMesh refine_for_display(const TriangleMesh& mesh, double spacing, double share) {
+  return split_long_edges(mesh, edges_over_spacing * spacing, static_cast<Index>(share * most_triangles));
 }
 
 std::vector<double> values_at_vertices(const SurfaceFunction& function, const RefinedMesh& refined,

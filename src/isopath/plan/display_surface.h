@@ -18,8 +18,8 @@ struct DisplaySurface {
 };
 
 /// The part with its edges halved to a fraction of the spacing that shows every pass, or as near to it as some 350000
-/// triangles allow.
-RefinedMesh refine_for_display(const TriangleMesh& mesh, double spacing);
+/// triangles allow, or a share of so many.
+RefinedMesh refine_for_display(const TriangleMesh& mesh, double spacing, double share = 1);
 
 /// The function at the vertices of a refined mesh; `at_old_vertices` are its values at those of the old one. Throws
 /// Error(cancelled) on request.

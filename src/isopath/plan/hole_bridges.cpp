@@ -110,13 +110,18 @@ std::vector<std::vector<SurfacePoint>> hole_bridges(const TriangleMesh& mesh, Pr
   return tree;
 }
 
-std::optional<TriangleMesh> opened_holes(const TriangleMesh& mesh, double spacing, Progress& progress) {
-  const TriangleMesh even = split_long_edges(mesh, spacing, most_faces).mesh;
-  const std::vector<std::vector<SurfacePoint>> bridges = hole_bridges(even, progress);
-  const CutMesh cut = cut_along(even, bridges);
-  TriangleMesh opened = opened_along(cut.refined.mesh, cut.is_cut);
-  if (nested_shape_of(opened) != NestedShape::disc) return std::nullopt;
-  return opened;
+std::optional<RefinedMesh> opened_holes(const TriangleMesh& mesh, double spacing, Progress& progress) {
+  const RefinedMesh even = split_long_edges(mesh, spacing, most_faces);
+  const std::vector<std::vector<SurfacePoint>> bridges = hole_bridges(even.mesh, progress);
+  CutMesh cut = cut_along(even.mesh, bridges);
+  RefinedMesh opened{opened_along(cut.refined.mesh, cut.is_cut), {}, std::move(cut.refined.old_face)};
+  if (nested_shape_of(opened.mesh) != NestedShape::disc) return std::nullopt;
+  opened.on_old.resize(opened.mesh.n_vertices());
+  for (Index f = 0; f < opened.mesh.n_faces(); ++f) {
+    for (int i = 0; i < 3; ++i)
+      opened.on_old[opened.mesh.triangle(f)[i]] = cut.refined.on_old[cut.refined.mesh.triangle(f)[i]];
+  }
+  return composed(mesh, even, std::move(opened));
 }
 
 }  // namespace isopath

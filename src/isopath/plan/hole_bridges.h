@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "isopath/core/progress.h"
+#include "isopath/mesh/refine.h"
 #include "isopath/mesh/surface_point.h"
 #include "isopath/mesh/triangle_mesh.h"
 
@@ -18,7 +19,7 @@ std::vector<std::vector<SurfacePoint>> hole_bridges(const TriangleMesh& mesh, Pr
 /// The surface cut open along these bridges, so that every component without handles has one boundary loop at most;
 /// edges are no longer than `spacing`, in mm. None where that does not come out, as there are handles. Throws
 /// Error(cancelled) on request.
-std::optional<TriangleMesh> opened_holes(const TriangleMesh& mesh, double spacing,
-                                         Progress& progress = Progress::none());
+std::optional<RefinedMesh> opened_holes(const TriangleMesh& mesh, double spacing,
+                                        Progress& progress = Progress::none());
 
 }  // namespace isopath

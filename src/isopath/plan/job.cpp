@@ -44,9 +44,6 @@ Value value_named(const char* what, std::string_view name, const std::array<Valu
 }
 
 void validate_blend(const Job& job) {
-  const bool nested = form_of(job.blend) || job.pattern == Pattern::double_spiral;
-  if (nested && job.partition.by != PartitionBy::none)
-    refuse("partition", std::string(name_of(job.partition.by)), "patches are neither blended nor double spirals");
   if (!form_of(job.blend)) return;
   if (job.pattern == Pattern::planar || job.pattern == Pattern::meander) {
     refuse("blend", fmt::format("with the pattern {}", name_of(job.pattern)),
@@ -73,14 +70,6 @@ void validate_scallop(const Job& job) {
 void validate_partition(const Job& job) {
   job.partition.validate();
   if (job.partition.by == PartitionBy::none) return;
-  if (job.scallop > 0) {
-    refuse("partition", fmt::format("{} with a scallop", name_of(job.partition.by)),
-           "patches are planned with a spacing: give one instead of the scallop's height");
-  }
-  if (job.smooth > 0) {
-    refuse("partition", fmt::format("{} with smoothing", name_of(job.partition.by)),
-           "the distances of patches are not smoothed: leave one of them out");
-  }
   if (job.sources != std::vector{SourceSpec{}}) {
     refuse("partition",
            fmt::format("{} with source '{}'", name_of(job.partition.by),
@@ -220,7 +209,8 @@ void Job::validate() const {
     refuse("smooth", fmt::format("{}", smooth), "circles have no corners to smooth: leave it out");
   }
   if (smooth > 0 && (form_of(blend) || pattern == Pattern::double_spiral)) {
-    refuse("smooth", fmt::format("{}", smooth), "blended distances and double spirals are not smoothed: leave it out");
+    refuse("smooth", fmt::format("{}", smooth),
+           "blended levels have no corners left to smooth, and what was raised would sink: leave one of them out");
   }
   validate_scallop(*this);
   validate_partition(*this);

@@ -74,7 +74,7 @@ NestedShape nested_shape_of(const TriangleMesh& mesh) {
   return shape;
 }
 
-std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress) {
+std::optional<RefinedMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress) {
   const TriangleMesh even = split_long_edges(mesh, judged_in_spacings * spacing, most_faces).mesh;
   const LoopFields fields(even, spacing, progress);
   if (length_ratio_of(even, annulus_field(fields, spacing).values) <= most_length_ratio) return std::nullopt;

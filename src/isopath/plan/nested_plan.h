@@ -7,6 +7,7 @@
 #include "isopath/contour/blend.h"
 #include "isopath/core/progress.h"
 #include "isopath/field/vertex_field.h"
+#include "isopath/mesh/refine.h"
 
 namespace isopath {
 
@@ -22,7 +23,7 @@ NestedShape nested_shape_of(const TriangleMesh& mesh);
 /// An annulus whose levels from loop to loop would be wasteful, as its width is uneven: cut open along the shortest way
 /// between its loops where it is narrowest, so that it is a disc. None where the levels of an annulus serve, which have
 /// no ends. `spacing` is that of the levels, mm. Throws Error(cancelled) on request.
-std::optional<TriangleMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress);
+std::optional<RefinedMesh> opened_annulus(const TriangleMesh& mesh, double spacing, Progress& progress);
 
 /// A function whose levels (k - ½) × spacing are to be nested closed curves.
 struct NestedField {

@@ -57,10 +57,10 @@ PartField smoothed_field(const PlanResult& result, const IntrinsicGeometry* metr
 /// Cuts the part open where nested levels need it; its field is then that of the part cut open. False where there are
 /// none to be had.
 bool open_for_nesting(PlanResult& result, PartField& field, Progress& progress) {
-  TriangleMesh& mesh = result.part.mesh;
+  const TriangleMesh& mesh = result.part.mesh;
   const NestedShape shape = nested_shape_of(mesh);
   if (shape == NestedShape::disc) return true;
-  std::optional<TriangleMesh> opened;
+  std::optional<RefinedMesh> opened;
   if (shape == NestedShape::annulus && result.job.blend == Blending::least)
     opened = opened_annulus(mesh, result.spacing, progress);
   if (shape == NestedShape::holes) opened = opened_holes(mesh, result.spacing, progress);
@@ -72,7 +72,7 @@ bool open_for_nesting(PlanResult& result, PartField& field, Progress& progress) 
           : "the part has holes: no level goes round all of them, so it was planned as if cut open along the shortest "
             "ways between them");
   field.function.reset();
-  mesh = *std::move(opened);
+  result.refine(*std::move(opened));
   field = field_of(result, nullptr, progress);
   return true;
 }
@@ -103,17 +103,17 @@ PartField field_of(const PlanResult& result, const IntrinsicGeometry* metric, Pr
   return exact_field_of(result, metric, loops_for(result.job), progress);
 }
 
-PartField nested_field_on(TriangleMesh fine, BlendForm form, PlanResult& result, Progress& progress) {
+PartField nested_field_on(RefinedMesh fine, BlendForm form, PlanResult& result, Progress& progress) {
   const double spacing = result.spacing;
   const double radius = result.job.min_radius > 0 ? result.job.min_radius : default_radius_in_spacings * spacing;
-  TriangleMesh& mesh = result.part.mesh;
+  const TriangleMesh& mesh = result.part.mesh;
   NestedField nested;
   for (int round = 0; round < 2; ++round) {
-    mesh = std::move(fine);
+    result.refine(std::move(fine));
     const PartField field = field_of(result, nullptr, progress);
     nested = nested_field(form, static_cast<const ExactField&>(*field.function), spacing, radius, progress);
     fine = refine_for_levels(mesh, nested.values, nested.spacing, progress);
-    if (fine.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
+    if (fine.mesh.n_faces() < 1.05 * mesh.n_faces()) break;  // single triangles are not worth it
   }
   std::vector<double> values = nested.values;
   return {std::make_unique<VertexField>(mesh, std::move(nested.values)), std::move(values), nested.spacing};
@@ -127,7 +127,7 @@ PartField nested_field_of(PlanResult& result, PartField field, Progress& progres
     result.pattern = Pattern::two_way;
     return field;
   }
-  TriangleMesh fine = refine_for_blend(result.part.mesh, *field.function, result.spacing, progress);
+  RefinedMesh fine = refine_for_blend(result.part.mesh, *field.function, result.spacing, progress);
   field.function.reset();
   return nested_field_on(std::move(fine), *form_of(result.job.blend), result, progress);
 }

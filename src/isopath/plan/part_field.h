@@ -53,6 +53,6 @@ PartField nested_field_of(PlanResult& result, PartField field, Progress& progres
 
 /// The same on the given mesh, which is fine enough for the distances and is made finer where its levels need it; it
 /// takes the place of the part's.
-PartField nested_field_on(TriangleMesh fine, BlendForm form, PlanResult& result, Progress& progress);
+PartField nested_field_on(RefinedMesh fine, BlendForm form, PlanResult& result, Progress& progress);
 
 }  // namespace isopath

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "isopath/core/error.h"
 #include "isopath/core/quiet_progress.h"
-#include "isopath/field/exact_field.h"
-#include "isopath/field/vertex_field.h"
 #include "isopath/impact/gap.h"
 #include "isopath/mesh/sub_mesh.h"
-#include "isopath/plan/auto_pattern.h"
-#include "isopath/plan/make_sources.h"
 #include "isopath/plan/patch_links.h"
+#include "isopath/plan/plan_result.h"
+#include "isopath/plan/stage_clock.h"
+#include "isopath/plan/whole_plan.h"
 
 namespace isopath {
 namespace {
@@ -40,12 +40,34 @@ PatchCurve on_whole(Index p, const SubMesh& patch, const ImpactCurve& curve) {
   return out;
 }
 
+/// The metric of the whole on a patch.
+std::optional<IntrinsicGeometry> metric_of(const TriangleMesh& whole, const SubMesh& patch,
+                                           const IntrinsicGeometry* metric) {
+  if (!metric) return std::nullopt;
+  std::vector<double> lengths;
+  for (Index e = 0; e < patch.mesh.n_edges(); ++e) {
+    const Index h = patch.mesh.halfedge_of(e);
+    lengths.push_back(metric->length(whole.halfedge_of(whole.edge_of(3 * patch.face[h / 3] + h % 3))));
+  }
+  return IntrinsicGeometry(patch.mesh, lengths);
+}
+
 class PatchPlanner {
  public:
-  PatchPlanner(const Partition& parts, const PatchPlanOptions& options, const RefinedMesh* display, Progress& progress)
-      : parts_(parts), options_(options), display_(display), progress_(progress) {
+  PatchPlanner(const Partition& parts, const Job& job, double spacing, const IntrinsicGeometry* metric,
+               Progress& progress)
+      : parts_(parts), job_(job), spacing_(spacing), metric_(metric), progress_(progress) {
+    job_.sources = {SourceSpec{}};
+    job_.partition = {};
+    // closed curves, which others can be joined to
+    if (job_.blend == Blending::automatic) job_.blend = Blending::none;
+    if (form_of(job_.blend) && !job_.pattern) job_.pattern = Pattern::double_spiral;
     plan_.distances.assign(parts.mesh.n_vertices(), infinity);
-    if (display) find_display_vertices();
+    shown_.positions = parts.mesh.soup().positions;
+    for (Index v = 0; v < parts.mesh.n_vertices(); ++v)
+      plan_.display.refined.on_old.push_back(point_at_vertex(parts.mesh, v));
+    plan_.display.distances.assign(parts.mesh.n_vertices(), infinity);
+    is_shown_.assign(parts.mesh.n_vertices(), 0);
   }
 
   PatchedPlan run() {
@@ -58,83 +80,75 @@ class PatchPlanner {
     if (curves_.empty()) {
       throw Error(ErrorCode::no_plan, "no isoline lies on any patch",
                   {.element = "option spacing",
-                   .value = fmt::format("{} mm", options_.spacing),
+                   .value = fmt::format("{} mm", spacing_),
                    .advice = "the spacing is too wide for the part: give a smaller one"});
     }
     string_together();
+    if (job_.report) plan_.display.refined.mesh = TriangleMesh(std::move(shown_));
     return std::move(plan_);
   }
 
  private:
-  void find_display_vertices() {
-    const TriangleMesh& shown = display_->mesh;
-    plan_.display_distances.assign(shown.n_vertices(), infinity);
-    display_vertices_.resize(parts_.n_patches);
-    std::vector<char> seen(shown.n_vertices(), 0);
-    for (Index f = 0; f < shown.n_faces(); ++f) {
-      const Index face = display_->old_face[f];
-      for (const Index v : shown.triangle(f)) {
-        if (std::exchange(seen[v], 1) == 0) display_vertices_[parts_.patch_of_face[face]].emplace_back(v, face);
-      }
+  PlanResult planned(const SubMesh& patch, const IntrinsicGeometry* metric, const Job& job, Progress& quiet) const {
+    PlanResult result;
+    result.job = job;
+    result.part.mesh = patch.mesh;
+    result.spacing = spacing_;
+    StageClock clock(result.times);
+    plan_whole(result, metric, clock, quiet, patch.mesh.area() / parts_.mesh.area());
+    for (ImpactPoint& point : result.impact.curve.points) point.at = result.trail.on_first(point.at);
+    for (Contour& contour : result.impact.contours) {
+      for (SurfacePoint& point : contour.points) point = result.trail.on_first(point);
     }
+    return result;
   }
 
-  struct Field {
-    std::unique_ptr<SurfaceFunction> function;
-    std::vector<double> at_vertices;
-  };
-  Field field_of(const TriangleMesh& mesh, Progress& progress) const {
-    if (options_.pattern == Pattern::planar) {
-      auto height = std::make_unique<VertexField>(height_field(mesh, options_.planar_direction));
-      std::vector<double> values(height->values().begin(), height->values().end());
-      return {std::move(height), std::move(values)};
+  /// Nothing that was blended where the patch has no such levels.
+  PlanResult planned_somehow(const SubMesh& patch, const IntrinsicGeometry* metric, Progress& quiet) const {
+    if (!form_of(job_.blend)) return planned(patch, metric, job_, quiet);
+    try {
+      return planned(patch, metric, job_, quiet);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::no_plan) throw;
     }
-    const SourceSet sources = make_sources(mesh, std::vector{SourceSpec{}}, {}, progress);
-    auto field =
-        std::make_unique<ExactField>(ExactField::compute(mesh, sources, {.accuracy = options_.accuracy}, progress));
-    std::vector<double> values(field->vertex_distances().begin(), field->vertex_distances().end());
-    return {std::move(field), std::move(values)};
+    Job job = job_;
+    job.blend = Blending::none;
+    if (job.pattern == Pattern::double_spiral) job.pattern = std::nullopt;
+    return planned(patch, metric, job, quiet);
   }
 
   void plan_patch(Index p, const SubMesh& patch) {
     QuietProgress quiet(progress_);
-    const Field field = field_of(patch.mesh, quiet);
-    for (Index v = 0; v < patch.mesh.n_vertices(); ++v) {
-      double& known = plan_.distances[patch.vertex[v]];
-      known = std::min(known, field.at_vertices[v]);
-    }
-    show(p, patch, *field.function);
-
-    ImpactOptions impact{.spacing = options_.spacing,
-                         .clearance = options_.clearance,
-                         .circle_radius = options_.circle_radius,
-                         .circle_step = options_.circle_step,
-                         .min_radius = options_.min_radius};
+    const std::optional<IntrinsicGeometry> metric = metric_of(parts_.mesh, patch, metric_);
     PatchFigures figures;
-    ImpactPlan plan;
+    PlanResult result;
     try {
-      if (options_.pattern) {
-        impact.pattern = figures.pattern = *options_.pattern;
-        plan = plan_impact(patch.mesh, *field.function, impact, quiet);
-      } else {
-        ChosenPlan chosen = plan_by_part(patch.mesh, *field.function, field.at_vertices, impact, quiet);
-        figures.pattern = chosen.pattern;
-        plan = std::move(chosen.plan);
-      }
+      result = planned_somehow(patch, metric ? &*metric : nullptr, quiet);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::no_plan) throw;
       plan_.impact.warnings.push_back(
           fmt::format("a patch of {:.4g} mm² is not covered: {}", patch.mesh.area(), error.summary()));
     }
-    if (!plan.curve.points.empty()) {
-      measure(patch.mesh, plan.curve, figures, quiet);
-      add_curve(p, patch, plan);
+    figures.pattern = result.pattern;
+    for (Index v = 0; v < patch.mesh.n_vertices() && !result.distances.empty(); ++v) {
+      double& known = plan_.distances[patch.vertex[v]];
+      known = std::min(known, result.distances[v]);
+    }
+    for (const std::string& warning : result.warnings) {
+      std::vector<std::string>& all = plan_.impact.warnings;
+      if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+    }
+    if (job_.report) show(patch, result);
+    if (!result.impact.curve.points.empty()) {
+      measure(patch.mesh, result.impact.curve, metric ? &*metric : nullptr, figures, quiet);
+      add_curve(p, patch, result.impact);
     }
     figures_.push_back(figures);
   }
 
-  void measure(const TriangleMesh& mesh, const ImpactCurve& curve, PatchFigures& figures, Progress& quiet) const {
-    const GapReport gap = measure_gap(mesh, curve, options_.spacing, quiet);
+  void measure(const TriangleMesh& mesh, const ImpactCurve& curve, const IntrinsicGeometry* metric,
+               PatchFigures& figures, Progress& quiet) const {
+    const GapReport gap = measure_gap(mesh, curve, spacing_, quiet, metric);
     figures.area = gap.area;
     figures.cover_length = length_of(curve, MoveKind::cover);
     figures.gap_max = gap.max;
@@ -151,13 +165,34 @@ class PatchPlanner {
     }
   }
 
-  /// Distances at the display's vertices in this patch.
-  void show(Index p, const SubMesh& patch, const SurfaceFunction& function) {
-    if (!display_) return;
-    for (const auto& [vertex, face] : display_vertices_[p]) {
-      SurfacePoint at = express_in(parts_.mesh, display_->on_old[vertex], face);
-      at.face = static_cast<Index>(std::lower_bound(patch.face.begin(), patch.face.end(), face) - patch.face.begin());
-      plan_.display_distances[vertex] = function.value(at);
+  /// Adds the patch's picture to that of the part. Vertices of the part keep their numbers in the first patch that has
+  /// them.
+  void show(const SubMesh& patch, const PlanResult& result) {
+    RefinedMesh& shown = plan_.display.refined;
+    if (result.display.distances.empty()) {  // not covered
+      for (const Index face : patch.face) {
+        shown_.triangles.push_back(parts_.mesh.triangle(face));
+        shown.old_face.push_back(face);
+      }
+      return;
+    }
+    const RefinedMesh& own = result.display.refined;
+    std::vector<Index> number(own.on_old.size());
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (static_cast<Index>(v) < patch.mesh.n_vertices() && std::exchange(is_shown_[patch.vertex[v]], 1) == 0) {
+        number[v] = patch.vertex[v];
+        plan_.display.distances[number[v]] = result.display.distances[v];
+        continue;
+      }
+      number[v] = static_cast<Index>(shown_.positions.size());
+      shown_.positions.push_back(own.mesh.position(static_cast<Index>(v)));
+      shown.on_old.push_back(patch.on_whole(result.trail.on_first(own.on_old[v])));
+      plan_.display.distances.push_back(result.display.distances[v]);
+    }
+    for (Index f = 0; f < own.mesh.n_faces(); ++f) {
+      const auto& [a, b, c] = own.mesh.triangle(f);
+      shown_.triangles.push_back({number[a], number[b], number[c]});
+      shown.old_face.push_back(patch.face[result.trail.on_first({own.old_face[f], Vec3::UnitX()}).face]);
     }
   }
 
@@ -168,8 +203,8 @@ class PatchPlanner {
       patch_of_curve.push_back(curve.patch);
       figures_[curve.patch].pieces = static_cast<Index>(curve.stretches.size());
     }
-    PatchChain chain = chain_patches(parts_.mesh, parts_.patch_of_face, std::move(curves_),
-                                     {options_.spacing, options_.clearance}, progress_);
+    PatchChain chain =
+        chain_patches(parts_.mesh, parts_.patch_of_face, std::move(curves_), {spacing_, job_.clearance}, progress_);
     const auto comes_next = [&](Index p) {
       rank[p] = static_cast<Index>(plan_.patches.size());
       plan_.patches.push_back(figures_[p]);
@@ -187,10 +222,12 @@ class PatchPlanner {
   }
 
   const Partition& parts_;
-  const PatchPlanOptions& options_;
-  const RefinedMesh* display_;
+  Job job_;
+  double spacing_;
+  const IntrinsicGeometry* metric_;
   Progress& progress_;
-  std::vector<std::vector<std::pair<Index, Index>>> display_vertices_;  // of every patch, with a face of it
+  TriangleSoup shown_;
+  std::vector<char> is_shown_;  // of the whole's vertices
   std::vector<PatchFigures> figures_;
   std::vector<PatchCurve> curves_;
   PatchedPlan plan_;
@@ -198,31 +235,9 @@ class PatchPlanner {
 
 }  // namespace
 
-PatchedPlan plan_patches(const Partition& parts, const PatchPlanOptions& options, const RefinedMesh* display,
+PatchedPlan plan_patches(const Partition& parts, const Job& job, double spacing, const IntrinsicGeometry* metric,
                          Progress& progress) {
-  return PatchPlanner(parts, options, display, progress).run();
-}
-
-RefinedMesh parted(const RefinedMesh& refined, std::span<const Index> patch_of_face) {
-  RefinedMesh out{{}, refined.on_old, refined.old_face};
-  TriangleSoup soup = refined.mesh.soup();
-  std::vector<Index> patch_of_shown;
-  for (const Index face : refined.old_face) patch_of_shown.push_back(patch_of_face[face]);
-  std::vector<char> used(soup.positions.size(), 0);
-  for (const SubMesh& patch : split_mesh(refined.mesh, patch_of_shown)) {
-    std::vector<Index> number = patch.vertex;
-    for (Index& v : number) {
-      if (std::exchange(used[v], 1) == 0) continue;
-      soup.positions.push_back(Vec3(soup.positions[v]));
-      out.on_old.push_back(SurfacePoint(out.on_old[v]));
-      v = static_cast<Index>(soup.positions.size()) - 1;
-    }
-    for (Index f = 0; f < patch.mesh.n_faces(); ++f) {
-      for (int i = 0; i < 3; ++i) soup.triangles[patch.face[f]][i] = number[patch.mesh.triangle(f)[i]];
-    }
-  }
-  out.mesh = TriangleMesh(std::move(soup));
-  return out;
+  return PatchPlanner(parts, job, spacing, metric, progress).run();
 }
 
 }  // namespace isopath

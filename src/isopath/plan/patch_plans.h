@@ -1,12 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "isopath/core/progress.h"
+#include "isopath/field/intrinsic_geometry.h"
 #include "isopath/impact/impact_plan.h"
-#include "isopath/mesh/refine.h"
+#include "isopath/plan/display_surface.h"
+#include "isopath/plan/job.h"
 #include "isopath/plan/partition.h"
 
 namespace isopath {
@@ -29,31 +29,19 @@ struct PatchedPlan {
   std::vector<PatchFigures> patches;  ///< in the order of work
   /// For every face of the mesh its patch, in that order.
   std::vector<Index> patch_of_face;
-  std::vector<double> distances;          ///< at every vertex: from the border of its patch, or the height for planar
-  std::vector<double> display_distances;  ///< at the vertices of `display`
+  std::vector<double> distances;  ///< at every vertex: from the border of its patch, or the height for planar
+  /// Distances on the surface to show; vertices on borders are doubled, so that every patch has values of its own
+  /// there. Empty where the job wants no report.
+  DisplaySurface display;
 };
 
-struct PatchPlanOptions {
-  std::optional<Pattern> pattern = {};  ///< none: for every patch what suits it (auto_pattern.h)
-  Vec3 planar_direction = Vec3::UnitX();
-  double spacing = 0;        ///< mm, > 0
-  double clearance = 0;      ///< of lifts, mm; 0 takes the spacing
-  double circle_radius = 0;  ///< see ImpactOptions
-  double circle_step = 0;
-  double min_radius = 0;  ///< of turns on the surface, mm; 0 takes the default of ImpactOptions
-  /// Most that a distance may be off, mm; 0 for exact ones.
-  double accuracy = 0;
-};
-
-/// Plans every patch with a field of its own, from its own border, and strings the curves together: the patches in an
-/// order with short ways between them, each curve entered at either end (a closed one anywhere), joined by links on the
-/// surface where these are short and by lifts elsewhere. `display` is a refinement of the mesh whose vertices are to
-/// have distances, or null. A patch without any isoline is left out, with a warning. Throws what `plan_impact` does,
+/// Plans every patch as a part of its own, from its own border, the way `job` asks for, and strings the curves
+/// together: the patches in an order with short ways between them, each curve entered at either end (a closed one
+/// anywhere), joined by links on the surface where these are short and by lifts elsewhere. The job's mesh, sources,
+/// spacing and partition are not looked at. Null metric: in space. Where levels of a patch cannot be blended it is
+/// planned without. A patch without any isoline is left out, with a warning. Throws what `plan_whole` does,
 /// Error(no_plan) when no patch can be covered.
-PatchedPlan plan_patches(const Partition& parts, const PatchPlanOptions& options, const RefinedMesh* display = nullptr,
-                         Progress& progress = Progress::none());
-
-/// The refinement with its vertices on borders of patches doubled, so that every patch has values of its own there.
-RefinedMesh parted(const RefinedMesh& refined, std::span<const Index> patch_of_face);
+PatchedPlan plan_patches(const Partition& parts, const Job& job, double spacing,
+                         const IntrinsicGeometry* metric = nullptr, Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -2,11 +2,13 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isopath/core/geometry.h"
 #include "isopath/impact/gap.h"
 #include "isopath/impact/impact_plan.h"
+#include "isopath/mesh/refine.h"
 #include "isopath/plan/display_surface.h"
 #include "isopath/plan/gap_choice.h"
 #include "isopath/plan/job.h"
@@ -45,7 +47,8 @@ struct SmoothingFigures {
 struct PlanResult {
   Job job;  ///< as it was given: where it leaves a choice to the planner, the choice is in this result
   Part part;
-  double spacing = 0;  ///< with a scallop: the pitch in the ball's metric, which is that on flat places
+  RefinementTrail trail;  ///< from the part's mesh to that which was given, where planning made it finer or cut it open
+  double spacing = 0;     ///< with a scallop: the pitch in the ball's metric, which is that on flat places
   Pattern pattern = Pattern::spiral;
   std::vector<double> distances;  ///< at every vertex: from the sources, smoothed where the job says so, or the height
                                   ///< for planar; infinity: unreached
@@ -69,6 +72,11 @@ struct PlanResult {
   double peak_memory_mb = 0;          ///< of the process so far
   std::vector<std::string> warnings;  ///< what the user should know, of all stages
 
+  /// Puts a finer mesh of the same surface in the place of the part's.
+  void refine(RefinedMesh refined) {
+    trail.add(part.mesh, refined);
+    part.mesh = std::move(refined.mesh);
+  }
   void warn_of(const std::vector<std::string>& more) { warnings.insert(warnings.end(), more.begin(), more.end()); }
 };
 

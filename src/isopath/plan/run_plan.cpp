@@ -129,7 +129,7 @@ void warn_of_gouges(PlanResult& result) {
 
 /// The metric that gives constant scallops, with the part made fine enough for it; none where the job asks for none.
 std::optional<IntrinsicGeometry> warp_for_scallop(const std::optional<FittedPart>& fitted, PlanResult& result,
-                                                  Progress& progress) {
+                                                  std::vector<Index>& patch_of_face, Progress& progress) {
   const Job& job = result.job;
   if (!fitted) return std::nullopt;
   result.scallop.emplace();
@@ -140,6 +140,10 @@ std::optional<IntrinsicGeometry> warp_for_scallop(const std::optional<FittedPart
   result.scallop->clamped_fraction = metric.clamped_fraction;
   result.scallop->gouged_fraction = metric.gouged_fraction;
   result.part.mesh = std::move(metric.mesh);
+  if (!patch_of_face.empty()) {
+    for (Index& face : metric.old_face) face = patch_of_face[face];
+    patch_of_face = std::move(metric.old_face);
+  }
   return IntrinsicGeometry(result.part.mesh, metric.edge_lengths);
 }
 
@@ -155,22 +159,12 @@ void measure(PlanResult& result, const IntrinsicGeometry* metric, Progress& prog
 }
 
 /// Patch by patch, each with a field from its own border.
-void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) {
-  const Job& job = result.job;
-  check_pass_count(std::array{0.0, 0.5 * result.part.mesh.size()}, result.spacing);
-  Partition parts = partition(std::move(result.part.mesh), result.spacing, job.partition, progress);
-  clock.ends("partition");
-  RefinedMesh shown;
-  if (job.report) shown = parted(refine_for_display(parts.mesh, result.spacing), parts.patch_of_face);
-  const PatchPlanOptions options{.pattern = job.pattern,
-                                 .planar_direction = direction_of_planes(job, parts.mesh),
-                                 .spacing = result.spacing,
-                                 .clearance = job.clearance,
-                                 .circle_radius = job.circle_radius,
-                                 .circle_step = job.circle_step,
-                                 .min_radius = job.min_radius,
-                                 .accuracy = field_accuracy * parts.mesh.size()};
-  PatchedPlan plan = plan_patches(parts, options, job.report ? &shown : nullptr, progress);
+void plan_by_patches(PlanResult& result, Partition parts, const IntrinsicGeometry* metric, StageClock& clock,
+                     Progress& progress) {
+  Job job = result.job;
+  job.planar_direction = direction_of_planes(job, result.part.mesh);
+  parts.mesh = std::move(result.part.mesh);
+  PatchedPlan plan = plan_patches(parts, job, result.spacing, metric, progress);
   result.part.mesh = std::move(parts.mesh);
   check_reach(result.part.mesh, plan.distances, job);
   result.pattern = plan.patches.front().pattern;
@@ -179,7 +173,7 @@ void plan_by_patches(PlanResult& result, StageClock& clock, Progress& progress) 
   result.patches = std::move(plan.patches);
   result.patch_of_face = std::move(plan.patch_of_face);
   result.distances = std::move(plan.distances);
-  result.display = {std::move(shown), std::move(plan.display_distances), {}};
+  result.display = std::move(plan.display);
   clock.ends("impact");
 }
 
@@ -207,12 +201,19 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   if (job.min_radius > 0) check_min_radius(mesh, job.min_radius);
   // all of a connected part is reached: what the tool or a program cannot do there need not wait for the field
   if (mesh.n_components() == 1) check_reach(mesh, std::vector<double>(mesh.n_vertices(), 0.0), job);
+  Partition parts;
+  if (job.partition.by != PartitionBy::none) {
+    check_pass_count(std::array{0.0, 0.5 * mesh.size()}, result.spacing);
+    parts = partition(std::move(result.part.mesh), result.spacing, job.partition, progress);
+    result.part.mesh = std::move(parts.mesh);
+    clock.ends("partition");
+  }
   std::optional<FittedPart> fitted;
   if (job.scallop > 0) fitted.emplace(mesh, result.spacing);
-  const std::optional<IntrinsicGeometry> warped = warp_for_scallop(fitted, result, progress);
+  const std::optional<IntrinsicGeometry> warped = warp_for_scallop(fitted, result, parts.patch_of_face, progress);
   const IntrinsicGeometry* metric = warped ? &*warped : nullptr;
   if (job.partition.by != PartitionBy::none) {
-    plan_by_patches(result, clock, progress);
+    plan_by_patches(result, std::move(parts), metric, clock, progress);
   } else {
     plan_whole(result, metric, clock, progress);
   }

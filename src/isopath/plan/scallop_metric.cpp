@@ -42,6 +42,7 @@ ScallopMetric scallop_metric(const TriangleMesh& mesh, std::span<const Principal
   metric.clamped_fraction = share_of(mesh, tool.clamped);
   metric.gouged_fraction = share_of(mesh, tool.gouged);
   metric.mesh = std::move(surface.refined.mesh);
+  metric.old_face = std::move(surface.refined.old_face);
   metric.edge_lengths = std::move(surface.edge_lengths);
   if (metric.gouged_fraction > least_share_to_tell) {
     metric.warnings.push_back(fmt::format(

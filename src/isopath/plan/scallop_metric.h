@@ -16,6 +16,7 @@ namespace isopath {
 /// A part warped by the metric of a ball tool (paper ch. 10).
 struct ScallopMetric {
   TriangleMesh mesh;                 ///< the part, finer where the metric changes fast; old vertices keep their numbers
+  std::vector<Index> old_face;       ///< of each face, the face of the part that it is a piece of
   std::vector<double> edge_lengths;  ///< in the metric, mm
   double clamped_fraction = 0;       ///< share of the area where the ball is almost as hollow as the part, or more
   double gouged_fraction = 0;        ///< share of the area where the ball does not fit

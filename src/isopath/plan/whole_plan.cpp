@@ -78,6 +78,7 @@ void plan_curve(PlanResult& result, PartField& field, const IntrinsicGeometry* m
 /// A blended spiral with the part it is planned on; none where its levels are not nested closed curves.
 struct BlendedSpiral {
   Part part;
+  RefinementTrail trail;
   ImpactPlan impact;
   std::vector<double> levels;  ///< the function at the vertices
   double spacing = 0;          ///< of its levels
@@ -86,12 +87,14 @@ std::optional<BlendedSpiral> blended_spiral(const PlanResult& result, const Part
   PlanResult trial;
   trial.job = result.job;
   trial.part = result.part;
+  trial.trail = result.trail;
   trial.spacing = result.spacing;
   try {
-    TriangleMesh fine = refine_for_blend(trial.part.mesh, *field.function, trial.spacing, progress);
+    RefinedMesh fine = refine_for_blend(trial.part.mesh, *field.function, trial.spacing, progress);
     PartField nested = nested_field_on(std::move(fine), BlendForm::least, trial, progress);
     ImpactPlan impact = plan_nested(trial, nested, progress);
-    return BlendedSpiral{std::move(trial.part), std::move(impact), std::move(nested.at_vertices), nested.spacing};
+    return BlendedSpiral{std::move(trial.part), std::move(trial.trail), std::move(impact),
+                         std::move(nested.at_vertices), nested.spacing};
   } catch (const Error& error) {
     if (error.code() != ErrorCode::no_plan) throw;
     return std::nullopt;
@@ -101,6 +104,7 @@ std::optional<BlendedSpiral> blended_spiral(const PlanResult& result, const Part
 /// Puts a blended spiral in the place of the part and field that it was made from.
 void take(BlendedSpiral blended, PlanResult& result, PartField& field) {
   result.part = std::move(blended.part);
+  result.trail = std::move(blended.trail);
   result.impact = std::move(blended.impact);
   result.pattern = Pattern::spiral;
   result.warn_of(result.impact.warnings);
@@ -148,7 +152,8 @@ void carry_to_part(const RefinementTrail& trail, RefinedMesh& shown) {
 
 }  // namespace
 
-void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress) {
+void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress,
+                double display_share) {
   const TriangleMesh& mesh = result.part.mesh;
   PartField field = field_of(result, metric, progress);
   check_pass_count(field.at_vertices, result.spacing);
@@ -180,7 +185,7 @@ void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock&
         if (!is_planned) plan_curve(result, field, metric, progress);
       },
       [&] {
-        if (result.job.report) result.display.refined = refine_for_display(shown, result.spacing);
+        if (result.job.report) result.display.refined = refine_for_display(shown, result.spacing, display_share);
       });
   if (too_fine > 0 && result.pattern == Pattern::spiral) result.spiral.emplace().too_fine = too_fine;
   if (result.job.report) {
