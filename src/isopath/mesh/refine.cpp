@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
-#include <unordered_map>
 #include <utility>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/edge_middles.h"
 
 namespace isopath {
 namespace {
@@ -82,16 +81,7 @@ class Refiner {
     return out;
   }
 
-  static std::uint64_t key(Index a, Index b) {
-    const auto [low, high] = std::minmax(a, b);
-    return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-  }
-  /// The midpoint of an edge, `no_index` while nobody has split it.
-  Index middle(Index a, Index b) const {
-    const auto found = middle_.find(key(a, b));
-    return found == middle_.end() ? no_index : found->second;
-  }
-  Index middle_of(const Leaf& leaf, int i) const { return middle(leaf.corner[i], leaf.corner[(i + 1) % 3]); }
+  Index middle_of(const Leaf& leaf, int i) const { return middles_.find(leaf.corner[i], leaf.corner[(i + 1) % 3]); }
 
   /// Halving serves a triangle with one split edge whose halves are whole; any other has to be split in four.
   bool must_follow(const Leaf& leaf) const {
@@ -100,7 +90,8 @@ class Refiner {
       const Index m = middle_of(leaf, i);
       if (m == no_index) continue;
       ++n_split;
-      if (middle(leaf.corner[i], m) != no_index || middle(m, leaf.corner[(i + 1) % 3]) != no_index) return true;
+      if (middles_.find(leaf.corner[i], m) != no_index || middles_.find(m, leaf.corner[(i + 1) % 3]) != no_index)
+        return true;
     }
     return n_split > 1;
   }
@@ -136,19 +127,12 @@ class Refiner {
     leaves_ = std::move(next);
   }
 
-  Index make_middle(Index a, Index b, const SurfacePoint& at) {
-    const auto [found, fresh] = middle_.try_emplace(key(a, b), static_cast<Index>(positions_.size()));
-    if (fresh) {
-      positions_.push_back(0.5 * (positions_[a] + positions_[b]));
-      on_old_.push_back(at);
-    }
-    return found->second;
-  }
+  Index make_middle(Index a, Index b, const SurfacePoint& at) { return middles_.make(a, b, at, positions_, on_old_); }
 
   std::vector<Vec3> positions_;
   std::vector<SurfacePoint> on_old_;
   std::vector<Leaf> leaves_;
-  std::unordered_map<std::uint64_t, Index> middle_;
+  EdgeMiddles middles_;
 };
 
 }  // namespace

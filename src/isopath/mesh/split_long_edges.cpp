@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "isopath/core/error.h"
+#include "isopath/mesh/edge_middles.h"
 #include "isopath/mesh/refine.h"
 
 namespace isopath {
@@ -50,7 +49,7 @@ class EdgeHalver {
       }
     }
     now_.swap(next_);
-    middle_.clear();  // every triangle beside a halved edge was divided with it
+    middles_.clear();  // every triangle beside a halved edge was divided with it
     return true;
   }
 
@@ -142,23 +141,14 @@ class EdgeHalver {
     }
   }
 
-  Index make_middle(Index a, Index b, const SurfacePoint& at) {
-    const auto [low, high] = std::minmax(a, b);
-    const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-    const auto [found, fresh] = middle_.try_emplace(key, static_cast<Index>(positions_.size()));
-    if (fresh) {
-      positions_.push_back(0.5 * (positions_[a] + positions_[b]));
-      on_old_.push_back(at);
-    }
-    return found->second;
-  }
+  Index make_middle(Index a, Index b, const SurfacePoint& at) { return middles_.make(a, b, at, positions_, on_old_); }
 
   std::vector<Vec3> positions_;
   std::vector<SurfacePoint> on_old_;
   std::vector<Part> triangles_;  ///< and those that have been divided
   std::vector<InOrder> now_;
   std::vector<InOrder> next_;
-  std::unordered_map<std::uint64_t, Index> middle_;
+  EdgeMiddles middles_;
 };
 
 }  // namespace
