@@ -36,7 +36,7 @@ struct ImpactOptions {
   /// Smallest radius that the curve may turn with on the surface, mm. 0: corners of two-way curves are rounded with
   /// 0.08 spacings, which costs no coverage, and those of other patterns stay.
   double min_radius = 0;
-  bool round_corners = false;  ///< rounds corners of every pattern as those of two-way curves
+  bool round_corners = false;  ///< of every pattern as those of two-way curves, and draws it as tight
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.
   const IntrinsicGeometry* metric = nullptr;
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit
