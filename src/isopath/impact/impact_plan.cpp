@@ -61,7 +61,8 @@ void finish(const SurfaceLinker& linker, const SmoothNormals& normals, const Imp
   if (limits.radius == 0 && (two_way || options.round_corners))
     limits.radius = default_radius_in_spacings * options.spacing;
   finish_curve(linker, normals, plan, limits,
-               {.radius_first = options.min_radius > 0, .taut = (two_way || options.round_corners) && !options.metric}, progress);
+               {.radius_first = options.min_radius > 0, .taut = (two_way || options.round_corners) && !options.metric},
+               progress);
 }
 
 class Planner {
