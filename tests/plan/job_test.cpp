@@ -179,6 +179,7 @@ TEST_F(JobFile, ComplaintsNameLineKeyValueAndWhatIsAllowed) {
   expect_all(complaint("blend: least\nscallop: 0.1\n"), {"blend", "scallop"});
   expect_all(complaint("pattern: double-spiral\nscallop: 0.1\n"), {"pattern", "scallop"});
   expect_all(complaint("blend: least\nsmooth: 2\n"), {"smooth", "no corners left"});
+  expect_all(complaint("pattern: double-spiral\nblend: none\n"), {"blend", "double-spiral", "nested", "two-way"});
   expect_all(complaint("circle_radius: -2\n"), {"line 2", "circle_radius", "-2", "at least 0"});
   expect_all(complaint("pattern: trochoidal\nscallop: 0.1\n"), {"scallop", "circles"});
   expect_all(complaint("pattern: trochoidal\nsmooth: 3\n"), {"smooth", "circles"});

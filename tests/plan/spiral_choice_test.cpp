@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "isopath/plan/run_plan.h"
 #include "support/plan_spiral.h"
 #include "support/test_meshes.h"
@@ -65,6 +67,35 @@ TEST(SpiralChoices, WhatIsChosenCostsLess) {
       EXPECT_TRUE(result.spiral->blended || result.spiral->by_distance->finished) << "compared as it is";
       EXPECT_EQ(result.job.blend, Blending::automatic) << "the job stays as it was given";
     }
+  }
+}
+
+TEST(SpiralChoices, OnADoubleSpiralsHolesTheCheaperClosedCurveIsTaken) {
+  const TriangleMesh two_holes =
+      test::planar_cells(14, 6, [](int i, int j) { return j < 2 || j > 3 || (i != 3 && i != 10); });
+  // levels from loop to loop are as good as can be
+  const TriangleMesh ring = test::open_cylinder(40, 8, 5, 4);
+  for (const TriangleMesh* mesh : {&two_holes, &ring}) {
+    const PlanResult result = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::automatic, 0.4);
+    ASSERT_TRUE(result.spiral && result.spiral->by_two_way && result.spiral->by_blend);
+    const double two_way = as_length(*result.spiral->by_two_way, 0.4);
+    const double nested = as_length(*result.spiral->by_blend, 0.4);
+    EXPECT_EQ(result.spiral->blended, nested <= two_way);
+    EXPECT_EQ(result.pattern, result.spiral->blended ? Pattern::double_spiral : Pattern::two_way);
+    EXPECT_NEAR(as_length(cost_of(result.impact.curve, 0.4, true), 0.4), std::min(nested, two_way), 1e-9 * nested);
+    const auto& points = result.impact.curve.points;
+    EXPECT_LE((points.front().position - points.back().position).norm(), 1e-9) << "closed, whichever it is";
+    EXPECT_EQ(result.job.blend, Blending::automatic) << "the job stays as it was given";
+    EXPECT_EQ(result.job.sources, Job{}.sources);
+    EXPECT_EQ(text_of(*result.spiral, result.gap.area, 0.4).rfind(result.spiral->blended ? "double" : "two-way", 0), 0U)
+        << "says first what was taken";
+    EXPECT_GE(result.gap.covered_fraction, 0.999);
+
+    const PlanResult told = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::least, 0.4);
+    EXPECT_FALSE(told.spiral);
+    EXPECT_EQ(told.pattern, Pattern::double_spiral);
+    expect_same_curve(
+        result, result.spiral->blended ? told : test::plan_spiral(*mesh, Pattern::two_way, Blending::automatic, 0.4));
   }
 }
 

@@ -44,6 +44,10 @@ Value value_named(const char* what, std::string_view name, const std::array<Valu
 }
 
 void validate_blend(const Job& job) {
+  if (job.pattern == Pattern::double_spiral && job.blend == Blending::none) {
+    refuse("blend", "none with the pattern double-spiral",
+           "a double spiral needs nested levels, which only blending makes: leave it out, or take spiral or two-way");
+  }
   if (!form_of(job.blend)) return;
   if (job.pattern == Pattern::planar || job.pattern == Pattern::meander) {
     refuse("blend", fmt::format("with the pattern {}", name_of(job.pattern)),

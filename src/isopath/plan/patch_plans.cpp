@@ -60,7 +60,8 @@ class PatchPlanner {
     job_.sources = {SourceSpec{}};
     job_.partition = {};
     // closed curves, which others can be joined to
-    if (job_.blend == Blending::automatic) job_.blend = Blending::none;
+    if (job_.blend == Blending::automatic)
+      job_.blend = job_.pattern == Pattern::double_spiral ? Blending::least : Blending::none;
     if (form_of(job_.blend) && !job_.pattern) job_.pattern = Pattern::double_spiral;
     plan_.distances.assign(parts.mesh.n_vertices(), infinity);
     shown_.positions = parts.mesh.soup().positions;

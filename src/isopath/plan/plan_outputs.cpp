@@ -89,6 +89,7 @@ nlohmann::ordered_json spiral_json(const PlanResult& result) {
   };
   add("by_distance", choice.by_distance);
   add("by_blend", choice.by_blend);
+  add("by_two_way", choice.by_two_way);
   return json;
 }
 

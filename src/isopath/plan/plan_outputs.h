@@ -14,10 +14,11 @@ namespace isopath {
 /// `lifts`, `links_length`, `gap` (`max`, `p99`, `mean`, `cv`, all over the spacing), `covered_fraction`, `min_radius`
 /// (null where the path is straight), `sharp_corners`, `path_time_s`, `time_s` per stage, `peak_memory_mb`,
 /// `warnings`; with a partition `patches` in the order of work (`pattern`, `area`, `cover_length`, `pieces`, `gap` of
-/// each by itself); where the planner chose between spirals `spiral` (`blended`, `why`, and what `by_distance` and
-/// `by_blend` cost); with smoothing `smoothing` (`width`, `gap_before_repair` over the spacing, `repair`, and what all
-/// `ways` to close gaps cost); where the job asks for a smallest radius `tight_places`, those with less (`at`,
-/// `radius`). Only `time_s` and `peak_memory_mb` differ from run to run.
+/// each by itself); where the planner chose between spirals `spiral` (`blended`, `why`, and what `by_distance`,
+/// `by_blend` and `by_two_way` cost, of those that were tried); with smoothing `smoothing` (`width`,
+/// `gap_before_repair` over the spacing, `repair`, and what all `ways` to close gaps cost); where the job asks for a
+/// smallest radius `tight_places`, those with less (`at`, `radius`). Only `time_s` and `peak_memory_mb` differ from run
+/// to run.
 std::string summary_json(const PlanResult& result);
 
 /// All files of a run: summary.json, impact.csv, tool.csv, path.vtp, the programs, job.yaml (with paths relative to

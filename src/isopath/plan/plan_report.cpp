@@ -111,8 +111,11 @@ ReportTable smoothing_table(const PlanResult& result) {
 ReportTable spiral_table(const PlanResult& result) {
   const SpiralChoice& choice = *result.spiral;
   ReportTable table{"Spiral",
-                    {{"levels", choice.blended ? "blended" : "by the distance alone", "",
-                      text_of(choice, result.gap.area, result.spacing) + "."}}};
+                    {{"levels",
+                      choice.blended      ? "blended"
+                      : choice.by_two_way ? "two-way"
+                                          : "by the distance alone",
+                      "", text_of(choice, result.gap.area, result.spacing) + "."}}};
   const auto add = [&](const char* name, const std::optional<CurveCost>& cost) {
     if (!cost) return;
     table.rows.push_back({name, text(cost->length), "mm",
@@ -121,6 +124,7 @@ ReportTable spiral_table(const PlanResult& result) {
   };
   add("by the distance alone", choice.by_distance);
   add("blended", choice.by_blend);
+  add("two-way", choice.by_two_way);
   return table;
 }
 

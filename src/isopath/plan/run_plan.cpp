@@ -183,7 +183,6 @@ PlanResult run_plan(const Job& job, Progress& progress) {
   job.validate();
   PlanResult result;
   result.job = job;
-  if (job.pattern == Pattern::double_spiral && !form_of(job.blend)) result.job.blend = Blending::least;
   StageClock clock(result.times);
 
   result.part = load_part(job.mesh, job.unit, progress);

@@ -23,6 +23,13 @@ std::string figures_of(const CurveCost& cost, double area, double spacing) {
   return text + fmt::format(", {} sharp corners", cost.sharp_corners);
 }
 
+bool has_rim_at_zero(const TriangleMesh& mesh, std::span<const double> distances) {
+  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+    if (!(distances[v] < infinity) || (mesh.is_boundary_vertex(v) && distances[v] > 1e-6 * mesh.size())) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 CurveCost cost_of(const ImpactCurve& curve, double spacing, bool finished) {
@@ -37,11 +44,13 @@ double as_length(const CurveCost& cost, double spacing) {
 bool may_blend_spiral(const Job& job, const TriangleMesh& mesh, std::span<const double> distances) {
   if (job.blend != Blending::automatic || (job.pattern && job.pattern != Pattern::spiral)) return false;
   if (job.smooth > 0 || job.scallop > 0 || mesh.boundary_loops().empty()) return false;
-  if (nested_shape_of(mesh) != NestedShape::disc) return false;
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    if (!(distances[v] < infinity) || (mesh.is_boundary_vertex(v) && distances[v] > 1e-6 * mesh.size())) return false;
-  }
-  return true;
+  return nested_shape_of(mesh) == NestedShape::disc && has_rim_at_zero(mesh, distances);
+}
+
+bool may_close_two_way(const Job& job, const TriangleMesh& mesh, std::span<const double> distances) {
+  if (job.blend != Blending::automatic || job.pattern != Pattern::double_spiral) return false;
+  const NestedShape shape = nested_shape_of(mesh);
+  return (shape == NestedShape::annulus || shape == NestedShape::holes) && has_rim_at_zero(mesh, distances);
 }
 
 double triangles_for_blend(const TriangleMesh& mesh, double spacing) {
@@ -61,6 +70,14 @@ std::string text_of(const SpiralChoice& choice, double area, double spacing) {
     return fmt::format(
         "by the distance alone: blending would take about {:.0f},000 triangles; --blend does it all the same",
         1e-3 * choice.too_fine);
+  }
+  if (choice.by_two_way) {
+    const std::string two_way = figures_of(*choice.by_two_way, area, spacing);
+    if (!choice.by_blend) return "two-way curve, closed as well: no double spiral is possible";
+    const std::string nested = figures_of(*choice.by_blend, area, spacing);
+    return choice.blended ? fmt::format("double spiral: {}; as a two-way curve {}", nested, two_way)
+                          : fmt::format("two-way curve, closed as well: {}; as a double spiral {}, which --blend keeps",
+                                        two_way, nested);
   }
   if (!choice.by_blend) return "by the distance alone";
   const std::string plain = figures_of(*choice.by_distance, area, spacing);

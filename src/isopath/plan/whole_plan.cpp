@@ -150,6 +150,61 @@ void carry_to_part(const RefinementTrail& trail, RefinedMesh& shown) {
   for (Index& face : shown.old_face) face = trail.on_first({face, Vec3::UnitX()}).face;
 }
 
+/// The two-way curve, which is closed as well. Passes need not be nested, and so follow the longest loop alone:
+/// distances from holes add a loop to the medial axis for each of them.
+PartField plan_closed_two_way(PlanResult& result, Progress& progress) {
+  const std::vector<SourceSpec> asked = std::exchange(result.job.sources, {SourceSpec{}});
+  PartField field = exact_field_of(result, nullptr, AutoLoops::longest, progress);
+  result.job.sources = asked;
+  ImpactOptions options = options_of(result, nullptr);
+  options.pattern = Pattern::two_way;
+  result.impact = plan_impact(result.part.mesh, *field.function, options, progress);
+  result.pattern = Pattern::two_way;
+  return field;
+}
+
+/// Plans the two-way curve and the double spiral on a part with holes, and takes the cheaper one. `field` is taken
+/// over: the exact distances from the whole rim.
+PartField choose_closed_curve(PlanResult& result, PartField field, Progress& progress) {
+  const double spacing = result.spacing;
+  const double area = result.part.mesh.area();
+  SpiralChoice& choice = result.spiral.emplace();
+  field.function.reset();  // one field in memory at a time
+  field = plan_closed_two_way(result, progress);
+  choice.by_two_way = cost_of(result.impact.curve, spacing, true);
+
+  PlanResult trial;
+  trial.job = result.job;
+  trial.job.blend = Blending::least;
+  trial.part = result.part;
+  trial.trail = result.trail;
+  trial.spacing = spacing;
+  trial.pattern = Pattern::double_spiral;
+  PartField nested;
+  try {
+    nested = nested_field_of(trial, field_of(trial, nullptr, progress), progress);
+    trial.impact = plan_nested(trial, nested, progress);
+    choice.by_blend = cost_of(trial.impact.curve, spacing, true);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::no_plan) throw;
+  }
+  const bool nested_is_better = choice.by_blend && may_cover(*choice.by_blend, area, spacing) &&
+                                (!may_cover(*choice.by_two_way, area, spacing) ||
+                                 as_length(*choice.by_blend, spacing) <= as_length(*choice.by_two_way, spacing));
+  if (nested_is_better) {
+    choice.blended = true;
+    result.warn_of(trial.warnings);
+    result.pattern = trial.pattern;
+    result.impact = std::move(trial.impact);
+    result.part = std::move(trial.part);
+    result.trail = std::move(trial.trail);
+    nested.function = std::make_unique<VertexField>(result.part.mesh, nested.at_vertices);
+    field = std::move(nested);
+  }
+  result.warn_of(result.impact.warnings);
+  return field;
+}
+
 }  // namespace
 
 void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock& clock, Progress& progress,
@@ -159,12 +214,16 @@ void plan_whole(PlanResult& result, const IntrinsicGeometry* metric, StageClock&
   check_pass_count(field.at_vertices, result.spacing);
   check_reach(mesh, field.at_vertices, result.job);
   warn_of_unreached(mesh, field.at_vertices, result.warnings);
+  const bool may_be_two_way = may_close_two_way(result.job, mesh, field.at_vertices);
+  if (result.job.pattern == Pattern::double_spiral && result.job.blend == Blending::automatic && !may_be_two_way)
+    result.job.blend = Blending::least;
   if (form_of(result.job.blend)) {
     result.pattern = result.job.pattern.value_or(Pattern::spiral);
     field = nested_field_of(result, std::move(field), progress);
   }
   clock.ends("field");
 
+  if (may_be_two_way) field = choose_closed_curve(result, std::move(field), progress);
   double too_fine = 0;
   if (may_blend_spiral(result.job, mesh, field.at_vertices)) {
     const double triangles = triangles_for_blend(mesh, result.spacing);
