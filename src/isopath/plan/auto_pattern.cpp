@@ -12,7 +12,7 @@ namespace {
 /// One lift is worth so much of the length.
 constexpr double similar_length = 1.05;
 /// The right angles of joints are worth so much of it.
-constexpr double worthwhile_length = 1.1;
+constexpr double worthwhile_length = 1.05;
 
 /// Where every pattern needs more lifts than this, from one component to the next, sparing less than the share of them
 /// is not worth planning all anew.

@@ -15,7 +15,7 @@ struct ChosenPlan {
 };
 
 /// A spiral or meander within this of area / spacing leaves a two-way curve nothing to win.
-inline constexpr double good_length_ratio = 1.12;
+inline constexpr double good_length_ratio = 1.08;
 
 /// Spiral where most of the isolines' length is in closed ones, else meander. A few levels tell. `values` are the
 /// function's at the vertices. Throws Error(cancelled) on request.
