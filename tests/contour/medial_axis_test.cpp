@@ -325,6 +325,20 @@ TEST(voronoi_diagram, of_two_points_of_a_plane_is_their_perpendicular) {
   }
 }
 
+TEST(voronoi_diagram, of_a_rectangles_sides_is_its_medial_axis) {
+  // each side is several segments in one line: nothing divides these
+  const TriangleMesh mesh = test::planar_grid(4, 3, 4, 3);
+  const BisectorGraph graph = voronoi_diagram(ExactField::compute(mesh, boundary_source(mesh)));
+  EXPECT_EQ(graph.arcs.size(), 5u);
+  EXPECT_EQ(graph.nodes.size(), 6u);
+  double length = 0;
+  for (const auto& arc : graph.arcs) {
+    for (std::size_t k = 1; k < arc.points.size(); ++k)
+      length += (position_of(mesh, arc.points[k].point) - position_of(mesh, arc.points[k - 1].point)).norm();
+  }
+  EXPECT_NEAR(length, 4 * 1.5 * std::numbers::sqrt2 + 1, 1e-7);
+}
+
 TEST(voronoi_diagram, finds_a_cell_inside_one_face) {
   const TriangleMesh mesh = test::planar_grid(1, 1, 4, 4);
   std::vector<SurfacePoint> points{{0, Vec3(0.34, 0.33, 0.33)}};

@@ -14,6 +14,7 @@ constexpr int most_divisions = 44;
 /// Fronts of one root that differ by no more than this are taken for parts of the same one, radians.
 constexpr double most_turn = 0.2;
 constexpr int most_refinements = 12;
+constexpr double same_distance_over_size = 1e-10;
 
 FrontTie reversed(FrontTie tie) {
   std::swap(tie.before, tie.after);
@@ -63,7 +64,12 @@ bool slide_to_node(const Front& a, const Front& b, const Front& c, Vec2 p, doubl
 }  // namespace
 
 bool BisectorRule::separates(const Front& a, const Front& b, const Vec2& p) const {
-  if (by_root) return a.root != b.root;
+  if (by_root) {
+    // Two as short ways from one direction are one way, to a point that both roots have: they cannot be told apart
+    // where a turn about that point changes the distance by less than distances are compared to.
+    const double angle = angle_between(a, b, p);
+    return a.root != b.root && 0.5 * angle * angle * a.distance(p) > 4 * same_distance_over_size * size;
+  }
   // a front has no direction yet where it starts
   const double start = 1e-9 * size;
   if (!a.straight && (p - a.source).squaredNorm() <= start * start) return false;
@@ -77,7 +83,7 @@ bool BisectorRule::may_meet(const Front& before, const Front& after, const Vec2&
 }
 
 FaceBisectors::FaceBisectors(const ExactFieldData& data, Index face, const BisectorRule& rule)
-    : data_(data), fronts_(data, face), rule_(rule), same_distance_(1e-10 * rule.size) {
+    : data_(data), fronts_(data, face), rule_(rule), same_distance_(same_distance_over_size * rule.size) {
   // cells of sources inside a face may not reach its sides
   const double slack = 1e-9 * rule.size;
   for (const auto& source : data.sources_in(face)) {

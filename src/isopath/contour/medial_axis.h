@@ -13,7 +13,8 @@ struct VoronoiOptions {
 
 /// The Voronoi diagram of a field's source elements (paper ch. 8): the points that two roots are equally far from, and
 /// no third is nearer. |d(p, root 0) - d(p, root 1)| <= 1e-9 × model size at every point of every arc. Elements of a
-/// polyline are roots of their own, so that a segment's cell ends at lines from its end points.
+/// polyline are roots of their own. Where two of them share a point, ways to it are ways to both: nothing divides them
+/// there.
 /// The field must be exact (accuracy 0). Throws Error(bad_usage) for invalid options, Error(cancelled) on request.
 BisectorGraph voronoi_diagram(const ExactField& field, const VoronoiOptions& options = {},
                               Progress& progress = Progress::none());
