@@ -23,8 +23,8 @@ reports=()
 plan_part blade "A turbine blade (10 x 129 units, taken as cm), spray coated in one spiral from end to end" \
   data/turbine_blade.off --unit cm --source boundary:0 --pattern spiral --spacing 40 \
   --process spray --stand-off 150 --feed 12000 --post yaml --post csv
-plan_part mech_part "A free-form part with four openings (1 unit, taken as 1 m), milled along its boundary" \
-  data/mech_part_holes.off --unit m --source boundary --pattern spiral --spacing 30 \
+plan_part mech_part "A free-form part with four openings (1 unit, taken as 1 m), milled in one closed curve without a lift" \
+  data/mech_part_holes.off --unit m --pattern two-way --spacing 30 \
   --process mill --tool ball:50 --feed 6000 --post yaml --post csv
 
 echo
