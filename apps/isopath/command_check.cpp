@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "isopath/core/atomic_file.h"
 #include "isopath/core/error.h"
 #include "isopath/mesh/check.h"
 #include "isopath/mesh/read_mesh.h"
@@ -202,7 +203,10 @@ void run_check(const CheckArguments& arguments, const CommonFlags& flags) {
     throw Error(ErrorCode::bad_usage, "--repair and -o go together",
                 {.advice = "give both to write the mended mesh, or none to look only"});
   }
-  if (arguments.repair) require_writable_format(arguments.output);
+  if (arguments.repair) {
+    require_writable_format(arguments.output);
+    check_writable(arguments.output);
+  }
   Findings findings;
   {
     ConsoleProgress progress(flags.quiet);

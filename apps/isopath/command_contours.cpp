@@ -139,6 +139,7 @@ void run_contours(const ContoursArguments& arguments, const CommonFlags& flags) 
   if (!arguments.output.empty() && extension != ".vtp" && extension != ".json") {
     refuse_value("option -o", arguments.output, "a file name that ends in .vtp or .json");
   }
+  check_writable_outputs(arguments.output, arguments.report);
   ConsoleProgress progress(flags.quiet);
   const auto [part, sources] = load_with_sources(arguments.input, flags, progress);
   progress.stage("distance field");

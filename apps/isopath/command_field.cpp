@@ -154,6 +154,7 @@ void check(const FieldArguments& arguments) {
   if (arguments.output.empty() && arguments.path_to.empty() && arguments.report.empty()) {
     throw Error(ErrorCode::bad_usage, "nothing to do: none of -o, --path-to and --report is given");
   }
+  check_writable_outputs(arguments.output, arguments.report);
 }
 
 struct Distances {

@@ -43,6 +43,12 @@ void check_report(const std::string& path) {
   }
 }
 
+void check_writable_outputs(const std::string& output, const std::string& report) {
+  for (const std::string& path : {output, report}) {
+    if (!path.empty()) check_writable(path);
+  }
+}
+
 std::string written_to(const std::string& output, const std::string& report) {
   std::string text;
   if (!output.empty()) text += fmt::format("written to {}\n", output);

@@ -16,6 +16,9 @@ void add_report(CLI::App& command, std::string& path);
 /// Throws Error(bad_usage) unless the path is empty or ends in .html.
 void check_report(const std::string& path);
 
+/// Before the work: throws Error(bad_input) naming the file that cannot be written. Either may be empty.
+void check_writable_outputs(const std::string& output, const std::string& report);
+
 /// "written to …", a line for each of the two files that was asked for.
 std::string written_to(const std::string& output, const std::string& report);
 

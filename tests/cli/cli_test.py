@@ -112,6 +112,24 @@ class Usage(Program):
     def test_an_output_that_cannot_be_written_is_3(self):
         self.assert_refused(run("field", self.plane, "-o", self.path("plane.off", "d.csv")), INPUT, "plane.off")
 
+    def test_what_cannot_be_written_is_refused_before_the_work(self):
+        # nobody may make folders in /proc, not even root
+        places = [os.path.join("/proc", "no", "such"), self.path("new", "n" * 300), self.path("plane.off", "below")]
+        before = os.listdir(self.folder.name)
+        for place in places:
+            for arguments in (["field", "-o", place + ".csv"], ["field", "--report", place + ".html"],
+                              ["contours", "--spacing", 5, "-o", place + ".json"],
+                              ["contours", "--spacing", 5, "--report", place + ".html"],
+                              ["medial-axis", "-o", place + ".csv"], ["medial-axis", "--report", place + ".html"],
+                              ["plan", "--no-report", "-o", place], ["check", "--repair", "-o", place + ".ply"]):
+                result = run(arguments[0], self.plane, *arguments[1:])
+                self.assert_refused(result, INPUT, place, "cannot ")
+                self.assertNotIn("read mesh", result.stderr)
+        self.assertEqual(os.listdir(self.folder.name), before)
+        self.assert_refused(run("field", self.plane, "--source", "vertex:99", "-o", self.path("a", "b", "d.csv")), USAGE)
+        self.assert_refused(run("plan", self.plane, "--spacing", 95, "-o", self.path("a", "b")), NO_PLAN)
+        self.assertEqual(os.listdir(self.folder.name), before)
+
 
 class Field(Program):
     def distances(self, *arguments):

@@ -115,6 +115,26 @@ TEST_F(OutputFolder, IsCheckedBeforehandWithoutChangingAnything) {
   write_output_folder(root_ / "old", files_);
   EXPECT_THROW(check_output_folder(root_ / "old" / files_[0].name), Error);
   EXPECT_THROW(check_output_folder(root_ / "old" / files_[0].name / "below/that"), Error);
+  EXPECT_THROW(check_output_folder(root_ / "y" / std::string(300, 'n') / "z"), Error);
+  EXPECT_EQ(names_in(root_), (Names{"old"}));
+  EXPECT_EQ(names_in(root_ / "old"), (Names{"a.csv", "b.json"}));
+}
+
+TEST_F(OutputFolder, AFileIsCheckedBeforehandWithoutChangingAnything) {
+  EXPECT_FALSE(obstacle_to_writing("name.csv"));
+  EXPECT_FALSE(obstacle_to_writing(root_ / "x/y/a.csv"));
+  EXPECT_TRUE(fs::is_empty(root_));
+  write_file_atomically(root_ / "a.csv", "old");
+  fs::create_directory(root_ / "folder");
+  EXPECT_FALSE(obstacle_to_writing(root_ / "a.csv"));
+  EXPECT_FALSE(obstacle_to_writing(root_ / "folder/a.csv"));
+  EXPECT_EQ(obstacle_to_writing(root_ / "folder"), std::errc::is_a_directory);
+  EXPECT_EQ(obstacle_to_writing(root_ / "a.csv/b.csv"), std::errc::not_a_directory);
+  EXPECT_EQ(obstacle_to_writing(root_ / "x" / std::string(300, 'n') / "a.csv"), std::errc::filename_too_long);
+  EXPECT_THROW(check_writable(root_ / "folder"), Error);
+  EXPECT_EQ(names_in(root_), (Names{"a.csv", "folder"}));
+  EXPECT_TRUE(fs::is_empty(root_ / "folder"));
+  EXPECT_EQ(read_whole_file(root_ / "a.csv"), "old");
 }
 
 }  // namespace

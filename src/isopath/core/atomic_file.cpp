@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "isopath/core/error.h"
 
@@ -27,6 +28,30 @@ bool write_all(int descriptor, std::string_view content) {
   }
   return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
+
+/// Makes a folder and those above it that are missing; they disappear again.
+class TrialFolders {
+ public:
+  TrialFolders(const std::filesystem::path& folder, std::error_code& error) {
+    std::vector<std::filesystem::path> missing;
+    std::error_code unknown;  // what cannot be looked at cannot be made either, and that error says more
+    for (auto path = folder; !path.empty() && !std::filesystem::exists(path, unknown); path = path.parent_path()) {
+      missing.push_back(path);
+    }
+    for (; !missing.empty() && !error; missing.pop_back()) {
+      if (std::filesystem::create_directory(missing.back(), error)) made_.push_back(missing.back());
+    }
+  }
+  TrialFolders(const TrialFolders&) = delete;
+  TrialFolders& operator=(const TrialFolders&) = delete;
+  ~TrialFolders() {
+    std::error_code ignored;
+    for (; !made_.empty(); made_.pop_back()) std::filesystem::remove(made_.back(), ignored);
+  }
+
+ private:
+  std::vector<std::filesystem::path> made_;
+};
 
 /// The permissions an ordinary new file gets.
 mode_t default_mode() {
@@ -57,6 +82,24 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
     ::unlink(temporary.c_str());
     fail(path, "cannot write", error);
   }
+}
+
+std::error_code obstacle_to_writing(const std::filesystem::path& path) {
+  std::error_code error;
+  const TrialFolders folders(path.parent_path(), error);
+  if (error) return error;
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) return std::make_error_code(std::errc::is_a_directory);
+  std::string temporary = path.string() + ".XXXXXX";
+  const int descriptor = ::mkstemp(temporary.data());
+  if (descriptor < 0) return {errno, std::generic_category()};
+  ::close(descriptor);
+  ::unlink(temporary.c_str());
+  return {};
+}
+
+void check_writable(const std::filesystem::path& path) {
+  if (const std::error_code error = obstacle_to_writing(path)) fail(path, "cannot write", error.value());
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {

@@ -1,7 +1,6 @@
 #include "isopath/plan/output_folder.h"
 
 #include <stdlib.h>  // mkdtemp
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -129,9 +128,8 @@ void check_output_folder(const fs::path& folder) {
     if (nearest == wanted) fail(wanted, "cannot write into the folder", "it is a file");
     fail(wanted, "cannot make the folder", nearest.string() + " is not a folder");
   }
-  if (::access(nearest.c_str(), W_OK | X_OK) != 0) {
-    fail(wanted, nearest == wanted ? "cannot write into the folder" : "cannot make the folder", std::strerror(errno));
-  }
+  if (const std::error_code obstacle = obstacle_to_writing(wanted / "summary.json"))
+    fail(wanted, nearest == wanted ? "cannot write into the folder" : "cannot make the folder", obstacle.message());
 }
 
 }  // namespace isopath

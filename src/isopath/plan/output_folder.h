@@ -22,7 +22,7 @@ void write_output_folder(const std::filesystem::path& folder, std::span<const Ou
                          Progress& progress = Progress::none());
 
 /// Throws Error(bad_input) when `write_output_folder` would fail for a reason that can be seen beforehand: the folder
-/// is a file, lies below one, or may not be written. Changes nothing.
+/// is a file, lies below one, or cannot be made or written to, which is tried. Leaves nothing behind.
 void check_output_folder(const std::filesystem::path& folder);
 
 }  // namespace isopath
