@@ -49,11 +49,11 @@ void run_export(const CLI::App& command, const ExportArguments& arguments, const
   options.spindle_rpm = arguments.spindle_rpm;
   options.retract = arguments.retract;
   const bool is_gcode = arguments.format.starts_with("gcode");
-  const std::string to = fmt::format("--to {}", arguments.format);
+  const std::string to = fmt::format("to {}", arguments.format);
   const bool is_spray = options.process == Process::spray;
   const std::vector<std::string> idle =
       warnings_of_idle(command, {{"--process", !is_gcode, to},
-                                 {"--spindle-rpm", !is_gcode || is_spray, is_gcode ? "--process spray" : to},
+                                 {"--spindle-rpm", !is_gcode || is_spray, is_gcode ? "process spray" : to},
                                  {"--retract", !is_gcode, to}});
   print_warnings(flags, idle);
   ConsoleProgress progress(flags.quiet);

@@ -123,7 +123,7 @@ void run_medial_axis(const CLI::App& command, const MedialAxisArguments& argumen
   if (arguments.min_angle > 180)
     refuse_value("option --min-angle", fmt::format("{}", arguments.min_angle), "at most 180");
   check_writable_outputs(arguments.output, arguments.report);
-  std::vector<std::string> warnings = warnings_of_idle(command, {{"--min-angle", arguments.voronoi, "--voronoi"}});
+  std::vector<std::string> warnings = warnings_of_idle(command, {{"--min-angle", arguments.voronoi, "voronoi"}});
   print_warnings(flags, warnings);
   ConsoleProgress progress(flags.quiet);
   const auto [part, sources] = load_with_sources(arguments.input, flags, progress);

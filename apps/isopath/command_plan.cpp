@@ -157,24 +157,36 @@ std::string text_summary(const PlanResult& result, const std::string& folder) {
   return text;
 }
 
-/// What was given in vain, beside the other options and what the job file says.
+/// What was given in vain, beside the other options and what the job file says. A file that a run wrote has all keys:
+/// one counts as given where its value is not the default.
 std::vector<std::string> idle_options(const CLI::App& command, const PlanArguments& given, const Job& job) {
-  const std::string pattern = fmt::format("--pattern {}", name_of(job.pattern));
-  const std::string process = fmt::format("--process {}", name_of(job.tool.process));
+  const Job plain;
+  const std::string pattern = fmt::format("pattern {}", name_of(job.pattern));
+  const std::string process = fmt::format("process {}", name_of(job.tool.process));
   const PartitionBy by = job.partition.by;
-  const std::string partition = fmt::format("--partition {}", name_of(by));
+  const std::string partition = fmt::format("partition {}", name_of(by));
   const bool is_planar = job.pattern == Pattern::planar;
+  const bool is_trochoidal = job.pattern == Pattern::trochoidal;
   const bool is_spray = job.tool.process == Process::spray;
-  return warnings_of_idle(command, {{"--source", is_planar, pattern},
-                                    {"--direction", !is_planar, pattern},
-                                    {"--blend", given.blend_form && !form_of(job.blend),
-                                     fmt::format("--blend-form {}", name_of(job.blend))},
-                                    {"--circle-radius", job.pattern != Pattern::trochoidal, pattern},
-                                    {"--circle-step", job.pattern != Pattern::trochoidal, pattern},
-                                    {"--crease-angle", by == PartitionBy::none || by == PartitionBy::medial, partition},
-                                    {"--unevenness", by == PartitionBy::none || by == PartitionBy::creases, partition},
-                                    {"--tool", is_spray, process},
-                                    {"--stand-off", !is_spray, process}});
+  const bool by_normal = job.tool.axis_mode == AxisMode::surface_normal;
+  const auto key = [](const char* name, const auto& value, const auto& standard) {
+    return value == standard ? "" : name;
+  };
+  return warnings_of_idle(
+      command,
+      {{"--source", is_planar, pattern, key("sources", job.sources, plain.sources)},
+       {"--direction", !is_planar, pattern, key("planar_direction", job.planar_direction, plain.planar_direction)},
+       {"--blend", given.blend_form && !form_of(job.blend), fmt::format("blend-form {}", name_of(job.blend))},
+       {"--circle-radius", !is_trochoidal, pattern, key("circle_radius", job.circle_radius, plain.circle_radius)},
+       {"--circle-step", !is_trochoidal, pattern, key("circle_step", job.circle_step, plain.circle_step)},
+       {"--crease-angle", by == PartitionBy::none || by == PartitionBy::medial, partition,
+        key("partition.crease_angle", job.partition.crease_angle, plain.partition.crease_angle)},
+       {"--unevenness", by == PartitionBy::none || by == PartitionBy::creases, partition,
+        key("partition.unevenness", job.partition.unevenness, plain.partition.unevenness)},
+       {"--tool", is_spray, process, key("tool.ball_diameter", job.tool.ball_diameter, plain.tool.ball_diameter)},
+       {"--stand-off", !is_spray, process, key("tool.stand_off", job.tool.stand_off, plain.tool.stand_off)},
+       {"--axis", by_normal, "axis surface_normal",
+        key("tool.fixed_axis", job.tool.fixed_axis, plain.tool.fixed_axis)}});
 }
 
 void run_command(const CLI::App& command, const PlanArguments& arguments, const CommonFlags& flags) {

@@ -103,8 +103,12 @@ CLI::Validator not_empty() {
 std::vector<std::string> warnings_of_idle(const CLI::App& command, const std::vector<IdleOption>& options) {
   std::vector<std::string> warnings;
   for (const IdleOption& given : options) {
-    if (given.is_idle && command.count(given.option) > 0)
-      warnings.push_back(fmt::format("{} has no effect with {}", given.option, given.beside));
+    if (!given.is_idle) continue;
+    if (command.count(given.option) > 0) {
+      warnings.push_back(fmt::format("{} has no effect with --{}", given.option, given.beside));
+    } else if (!given.key.empty()) {
+      warnings.push_back(fmt::format("{} in the job file has no effect with {}", given.key, given.beside));
+    }
   }
   return warnings;
 }

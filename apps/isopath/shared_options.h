@@ -48,9 +48,12 @@ CLI::Validator not_empty();
 struct IdleOption {
   const char* option;
   bool is_idle;        ///< as the other options are
-  std::string beside;  ///< what makes it idle, as it would be written on the command line
+  std::string beside;  ///< what makes it idle, as it would be written on the command line behind its dashes
+  /// The key of the job file that sets it to something; empty where none does.
+  std::string key = {};
 };
-/// A sentence for each that was given in vain: "--direction has no effect with --pattern spiral".
+/// A sentence for each that was given in vain: "--direction has no effect with --pattern spiral", or where only the job
+/// file gives it, "planar_direction in the job file has no effect with pattern spiral".
 std::vector<std::string> warnings_of_idle(const CLI::App& command, const std::vector<IdleOption>& options);
 
 /// Explains SRC at the end of a command's help.

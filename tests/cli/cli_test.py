@@ -480,6 +480,24 @@ class Plan(Program):
             result = self.plan(job, *idle, *beside, "--json", "-o", self.path("out"))
             self.assertIn(f"isopath: warning: {told}\n", result.stderr)
             self.assertIn(told, json.loads(result.stdout)["warnings"])
+        given = {"planar_direction": "[1, 0, 0]", "circle_radius": 5, "circle_step": 5, "partition": "{crease_angle: 1}",
+                 "tool": "{stand_off: 100}"}
+        self.write(job, "mesh: plane.off\nspacing: 9\npattern: meander\n" + "".join(f"{k}: {v}\n" for k, v in given.items()))
+        result = self.plan(job, "--circle-step", 6, "--json", "-o", self.path("out"))
+        self.assertEqual([w for w in json.loads(result.stdout)["warnings"] if "no effect" in w],
+                         ["planar_direction in the job file has no effect with pattern meander",
+                          "circle_radius in the job file has no effect with pattern meander",
+                          "--circle-step has no effect with --pattern meander",
+                          "partition.crease_angle in the job file has no effect with partition none",
+                          "tool.stand_off in the job file has no effect with process mill"])
+        self.write(job, "mesh: plane.off\nspacing: 9\npattern: planar\nsources: ['vertex:3']\npartition: {unevenness: 2}\n"
+                   "report: false\ntool: {process: spray, ball_diameter: 6, fixed_axis: [1, 0, 1]}\n")
+        for key in ["sources", "partition.unevenness", "tool.ball_diameter", "tool.fixed_axis"]:
+            self.assertIn(f"{key} in the job file has no effect", self.plan(job, "-o", self.path("out")).stderr)
+        self.plan(self.plane, "--spacing", 9, "--no-report", "-o", self.path("out"))
+        whole = self.plan(self.path("out", "job.yaml"), "-o", self.path("again"))  # has all the keys
+        self.assertNotIn("no effect", whole.stderr)
+        self.write(job, "mesh: plane.off\nspacing: 9\nreport: false\ntool:\n  process: spray\n")
         useful = self.plan(job, "--stand-off", 100, "--pattern", "planar", "--direction", "1,0,0", "-o", self.path("out"))
         self.assertNotIn("no effect", useful.stderr)
         self.assertIn("--stand-off has no effect with --process mill",
