@@ -11,6 +11,7 @@
 #include "isopath/field/exact_field.h"
 #include "isopath/field/vertex_field.h"
 #include "isopath/impact/gap.h"
+#include "isopath/impact/min_radius.h"
 #include "isopath/mesh/straight_walk.h"
 #include "isopath/mesh/surface_locator.h"
 #include "isopath/mesh/surface_walk.h"
@@ -125,6 +126,25 @@ TEST(Trochoid, AClosedGuideOnACurvedSurfaceGivesAClosedTraceWithoutAJump) {
   }
 }
 
+TEST(Trochoid, TurnsNoTighterThanItsTightestRadius) {
+  test::Rng rng(5);
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE(i);
+    const double step = test::random_real(rng, 0.1, 10);
+    const double tightest = test::random_real(rng, 0.1, 20);
+    const double radius = circle_radius_for(tightest, step);
+    EXPECT_NEAR(tightest_radius({radius, step, 0}), tightest, 1e-9 * radius);
+    double found = infinity;
+    for (int k = 0; k < 720; ++k) {  // c(t) = (v t, 0) + r (cos t, sin t)
+      const double t = full_turn * k / 720;
+      const Vec2 first(step / full_turn - radius * std::sin(t), radius * std::cos(t));
+      const Vec2 second(-radius * std::cos(t), -radius * std::sin(t));
+      found = std::min(found, std::pow(first.norm(), 3) / std::abs(cross(first, second)));
+    }
+    EXPECT_NEAR(found, tightest, 1e-9 * radius);
+  }
+}
+
 TEST(GuideLayout, FillsTheRangeSoThatTheFirstHarmonicVanishes) {
   test::Rng rng(3);
   for (int i = 0; i < 1000; ++i) {
@@ -180,6 +200,27 @@ TEST(TrochoidalPlan, CoversThePlaneWithAUniformDensityAwayFromTheRims) {
   // A turn is a circle's length, and a guide stands for its distance.
   EXPECT_NEAR(mean, full_turn * radius / (distance * 2), 0.08 * mean);
   for (const double density : densities) EXPECT_NEAR(density, mean, 0.05 * mean);
+}
+
+TEST(TrochoidalPlan, TakesCirclesForTheSmallestRadiusThatIsAskedFor) {
+  const TriangleMesh mesh = test::planar_grid(24, 18, 80, 60);
+  const VertexField height = height_field(mesh, Vec3::UnitY());
+  for (const double min_radius : {5.0, 8.0, 9.5, 11.0}) {
+    SCOPED_TRACE(min_radius);
+    for (const double circle_radius : {0.0, 1.1 * min_radius}) {
+      const ImpactPlan plan = plan_impact(mesh, height,
+                                          {.pattern = Pattern::trochoidal,
+                                           .spacing = 2,
+                                           .circle_radius = circle_radius,
+                                           .close_gaps = false,
+                                           .min_radius = min_radius});
+      // both ends of each link from guide to guide are corners; circles that are too small turn tightly in every turn
+      const std::size_t corners = 2 * plan.contours.size();
+      const std::size_t tight = tight_places(mesh, plan.curve, 0.99 * min_radius).size();
+      EXPECT_EQ(tight <= corners, circle_radius == 0) << tight;
+      EXPECT_EQ(plan.warnings.empty(), circle_radius == 0);
+    }
+  }
 }
 
 TEST(TrochoidalPlan, CoversSurfacesAndStaysOnThem) {

@@ -30,11 +30,13 @@ struct ImpactOptions {
   Pattern pattern = Pattern::spiral;
   double spacing = 0;        ///< distance between neighbouring passes, mm; required, > 0
   double clearance = 0;      ///< height of lifts above the surface, mm; 0 takes the spacing
-  double circle_radius = 0;  ///< trochoidal: greatest radius of the circles, mm; 0 takes three spacings
+  double circle_radius = 0;  ///< trochoidal: greatest radius of the circles, mm; 0 takes three
+                             ///< spacings, or more where `min_radius` asks for it
   double circle_step = 0;    ///< trochoidal: way of their centre in a turn, mm; 0 takes the spacing
   bool close_gaps = true;    ///< and round corners, see gap_repair.h and min_radius.h
   /// Smallest radius that the curve may turn with on the surface, mm. 0: corners of two-way curves are rounded with
-  /// 0.08 spacings, which costs no coverage, and those of other patterns stay.
+  /// 0.08 spacings, which costs no coverage, and those of other patterns stay. Trochoidal: circles are as large as that
+  /// takes, unless their radius is given; bumps and links keep their corners.
   double min_radius = 0;
   bool round_corners = false;  ///< of every pattern as those of two-way curves, and draws it as tight
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.

@@ -30,6 +30,11 @@ constexpr double lift_cost_in_spacings = 20;
 constexpr double most_guides = 20000;
 constexpr double most_points = 2e7;
 
+double default_circle_radius(const ImpactOptions& options, double step) {
+  const double usual = default_radius_over_spacing * options.spacing;
+  return options.min_radius > 0 ? std::max(usual, circle_radius_for(options.min_radius, step)) : usual;
+}
+
 /// Between two points of a circle with a chord that keeps the tolerance.
 double widest_angle(const CircleOptions& options) {
   const double tolerance =
@@ -146,12 +151,13 @@ class TrochoidPlanner {
       : mesh_(mesh),
         function_(function),
         options_(options),
-        circle_{options.circle_radius > 0 ? options.circle_radius : default_radius_over_spacing * options.spacing,
-                options.circle_step > 0 ? options.circle_step : options.spacing, 0},
+        circle_{options.circle_radius, options.circle_step > 0 ? options.circle_step : options.spacing, 0},
         progress_(progress),
         locator_(mesh),
         normals_(mesh),
-        linker_(mesh, locator_, progress) {}
+        linker_(mesh, locator_, progress) {
+    if (circle_.radius == 0) circle_.radius = default_circle_radius(options, circle_.step);
+  }
 
   ImpactPlan run() {
     progress_.stage("isolines");
@@ -184,6 +190,12 @@ class TrochoidPlanner {
                       "do not fit the part evenly",
                       circle_.radius, asked));
     }
+    if (const double tightest = tightest_radius(circle_); tightest < options_.min_radius) {
+      plan.warnings.push_back(fmt::format(
+          "circles of {:.4g} mm whose centre moves by {:.4g} mm in a turn turn with {:.4g} mm at least, "
+          "which is less than the smallest radius of {:.4g} mm: give them a larger radius or a shorter step",
+          circle_.radius, circle_.step, tightest, options_.min_radius));
+    }
     plan.curve = assembly.take();
     progress_.stage("wide gaps");
     // Where a longer step than the spacing is asked for, what it leaves between turns is wanted.
@@ -210,10 +222,20 @@ class TrochoidPlanner {
     }
     const bool top_at_rim = top != no_index && mesh_.is_boundary_vertex(top) &&
                             function_.value_at_vertex(top) >= range.high - 10 * tolerance;
-    GuideLayout found = guide_layout(range.low, range.high, circle_.radius, low_at_rim && !low_inside, top_at_rim);
+    const auto lay_out = [&](double radius) {
+      return guide_layout(range.low, range.high, radius, low_at_rim && !low_inside, top_at_rim);
+    };
+    GuideLayout found = lay_out(circle_.radius);
+    if (options_.circle_radius == 0 && found.levels.size() > 1 && tightest_at(found.radius) < options_.min_radius) {
+      // with one guide less, the circles that fit evenly are larger than those that were looked for
+      const double distances = (range.high - range.low) / found.distance;
+      found = lay_out(found.radius * distances / (distances - 1) * (1 + 1e-9));
+    }
     circle_.radius = found.radius;
     return found;
   }
+
+  double tightest_at(double radius) const { return tightest_radius({radius, circle_.step, 0}); }
 
   std::vector<Visit> order(const std::vector<Contour>& guides) const {
     std::vector<std::vector<Gate>> gates;
@@ -256,6 +278,16 @@ void CircleOptions::validate() const {
   if (!(step > 0 && std::isfinite(step))) reject("step", step, "a length above 0");
   if (!(chord_tolerance >= 0 && std::isfinite(chord_tolerance)))
     reject("chord_tolerance", chord_tolerance, "0 or more");
+}
+
+double tightest_radius(const CircleOptions& options) {
+  const double way = std::min(options.radius, options.step / full_turn);
+  return (options.radius - way) * (options.radius - way) / options.radius;
+}
+
+double circle_radius_for(double tightest, double step) {
+  const double way = step / full_turn;
+  return way + 0.5 * (tightest + std::sqrt(tightest * (tightest + 4 * way)));
 }
 
 std::vector<CirclePoint> trochoid(const TriangleMesh& mesh, const SurfaceCurve& curve, const Vec3& towards,

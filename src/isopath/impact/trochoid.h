@@ -17,6 +17,12 @@ struct CircleOptions {
   void validate() const;       ///< throws Error(bad_usage) naming the field, its value and its limit
 };
 
+/// The smallest radius that the trace turns with beside a straight guide: (r - v)²/r, v being the way of the centre for
+/// each radian of a turn. There the point runs against the centre. 0 where the trace has loops no more.
+double tightest_radius(const CircleOptions& options);
+/// The radius of the circles whose trace turns no tighter than with `tightest` (mm, >= 0): the inverse for this step.
+double circle_radius_for(double tightest, double step);
+
 /// A point of the trace, and the centre it belongs to.
 struct CirclePoint {
   SurfacePoint centre;
