@@ -27,15 +27,23 @@ class BucketQueue {
   /// Whether a key lies in the bucket being emptied or before it.
   bool due(float key) const { return key * per_width_ - first_ < 1; }
   bool empty() const { return size_ == 0; }
-  /// The item that comes `n` after the next, if the bucket being emptied reaches so far; else the last one that it
-  /// holds. For a look ahead only, and not on an empty queue.
+  /// Goes on to the next bucket that holds items, if need be, and tells how many are left in it. The queue must not be
+  /// empty.
+  std::size_t n_next() {
+    while (next_ == buckets_[current_].size()) advance();
+    return buckets_[current_].size() - next_;
+  }
+  /// The item that comes `n` after the next, if this bucket and the one after it reach so far; else the next. For a
+  /// look ahead only, and after `n_next`.
   std::uint32_t ahead(std::size_t n) const {
     const std::vector<std::uint32_t>& bucket = buckets_[current_];
-    return bucket[std::min(next_ + n, bucket.size() - 1)];
+    if (next_ + n < bucket.size()) return bucket[next_ + n];
+    const std::vector<std::uint32_t>& after = buckets_[(current_ + 1) % n_buckets];
+    n -= bucket.size() - next_;
+    return n < after.size() ? after[n] : bucket[next_];
   }
-  /// Removes the next item. The queue must not be empty.
+  /// Removes the next item, one of `n_next`.
   std::uint32_t pop() {
-    while (next_ == buckets_[current_].size()) advance();
     --size_;
     return buckets_[current_][next_++];
   }

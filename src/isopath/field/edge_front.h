@@ -58,7 +58,7 @@ struct EdgeFront {
   }
   const float to_tail = tail.distance - bent;
   const float to_head = head.distance - bent;
-  const float x = 0.5F * ((to_tail - to_head) * (to_tail + to_head) / length + length);
+  const float x = 0.5F * ((to_tail - to_head) * (to_tail + to_head) * (1 / length) + length);
   const float squared = (to_tail - x) * (to_tail + x);
   return {{x, squared >= 0 ? -std::sqrt(squared) : none}, bent, false};
 }

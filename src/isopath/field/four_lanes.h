@@ -16,8 +16,22 @@ using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
 inline Floats all(float value) { return Floats{value, value, value, value}; }
-inline Floats min(Floats a, Floats b) { return a < b ? a : b; }
-inline Floats max(Floats a, Floats b) { return a > b ? a : b; }
+inline Floats min(Floats a, Floats b) {
+#ifdef __SSE2__
+  return _mm_min_ps(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+inline Floats max(Floats a, Floats b) {
+#ifdef __SSE2__
+  return _mm_max_ps(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+/// In each lane `a` where it is true, else `b`.
+inline Floats select(Ints truth, Floats a, Floats b) { return Floats((truth & Ints(a)) | (~truth & Ints(b))); }
 
 inline Floats square_root(Floats a) {
 #ifdef __SSE2__
@@ -77,13 +91,6 @@ inline FourRecords transposed(Floats a, Floats b, Floats c, Floats d) {
 template <typename Record>
 FourRecords records(const Record* at) {
   return transposed(words_of(at[0]), words_of(at[1]), words_of(at[2]), words_of(at[3]));
-}
-
-template <typename Record>
-void put_records(const FourRecords& words, Record* at) {
-  static_assert(sizeof(Record) == sizeof(Floats));
-  const FourRecords rows = transposed(words.first, words.second, words.third, words.fourth);
-  std::memcpy(static_cast<void*>(at), &rows, sizeof(rows));
 }
 
 }  // namespace isopath

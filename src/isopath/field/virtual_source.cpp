@@ -1,6 +1,7 @@
 #include "isopath/field/virtual_source.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -148,27 +149,28 @@ bool fronts_met(const Door& door, float& distance) {
 }
 
 /// Which of four faces beside each other may take the front on: `step_through` with all that costs little, of which
-/// most faces bring nothing. The nearer end of two spokes is the one to step through.
-[[gnu::always_inline]] inline std::uint32_t steps_from(const Arrival& here, const FanSpoke* spokes,
+/// most faces bring nothing. The nearer end of two spokes is the one to step through. What to do next waits for this
+/// answer, so the way to it is kept short: no division by what is not known early, and squares compared, not roots.
+[[gnu::always_inline]] inline std::uint32_t steps_from(const Arrival& here, const Fan& fan, std::size_t i,
                                                        const Arrival* around) {
   const FourRecords left = records(around);
   const FourRecords right = records(around + 1);
-  const FourRecords face = records(spokes);
-  const Floats right_length = records(spokes + 1).second;
+  const Floats left_length = words_at(fan.length + i);
+  const Floats right_length = words_at(fan.next_length + i);
   const Ints to_left = left.first <= right.first;
-  const Floats nearer = to_left ? left.first : right.first;
-  const Floats farther = to_left ? right.first : left.first;
-  const Ints root = Ints(to_left ? left.fourth : right.fourth);
+  const Floats nearer = select(to_left, left.first, right.first);
+  const Floats farther = select(to_left, right.first, left.first);
+  const Ints root = Ints(select(to_left, left.fourth, right.fourth));
   const Ints served = (root & Ints{is_settled, is_settled, is_settled, is_settled}) != 0;
   const Ints worth = served & (farther > min(nearer, all(here.distance)));
   if (bits(worth) == 0) return 0;
 
-  const Floats length = to_left ? face.second : right_length;
-  const Floats front_length = to_left ? right_length : face.second;
-  const Floats front_x = front_length * face.third;
-  const Floats front_y = front_length * face.fourth;
-  const Floats other_bent = to_left ? left.second : right.second;
-  const Ints source = Ints(to_left ? left.third : right.third);
+  const Floats length = select(to_left, left_length, right_length);
+  const Floats front_length = select(to_left, right_length, left_length);
+  const Floats front_x = front_length * words_at(fan.cosine + i);
+  const Floats front_y = front_length * words_at(fan.sine + i);
+  const Floats other_bent = select(to_left, left.second, right.second);
+  const Ints source = Ints(select(to_left, left.third, right.third));
   const auto own_source = static_cast<std::int32_t>(here.source);
   const Floats bent = min(other_bent, all(here.bent));
   const Ints two_roots = (source != Ints{own_source, own_source, own_source, own_source}) & (bent == 0) &
@@ -177,34 +179,40 @@ bool fronts_met(const Door& door, float& distance) {
 
   const Floats to_tail = all(here.distance) - bent;
   const Floats to_head = nearer - bent;
-  const Floats x = 0.5F * ((to_tail - to_head) * (to_tail + to_head) / length + length);
+  const Floats x = 0.5F * ((to_tail - to_head) * (to_tail + to_head) * (1 / length) + length);
   const Floats y = square_root((to_tail - x) * (to_tail + x));  // where there is no circle, nothing compares to it
   Floats ray_x = front_x - x;
   Floats ray_y = front_y + y;
-  Floats distance = bent + square_root(ray_x * ray_x + ray_y * ray_y);
+  const Floats wanted = farther * all(1 - single_rounding);
+  const Floats wanted_radius = wanted - bent;
+  Ints nearer_by_front = ray_x * ray_x + ray_y * ray_y < wanted_radius * wanted_radius;
   if (bits(straight) != 0) {
     const Floats slope = (nearer - all(here.distance)) / length;
     const Floats rise = square_root(1 - slope * slope);
-    ray_x = straight ? slope : ray_x;
-    ray_y = straight ? rise : ray_y;
-    distance = straight ? all(here.distance) + (slope * front_x + rise * front_y) : distance;
+    ray_x = select(straight, slope, ray_x);
+    ray_y = select(straight, rise, ray_y);
+    const Ints nearer_straight = all(here.distance) + (slope * front_x + rise * front_y) < wanted;
+    nearer_by_front = (straight & nearer_straight) | (~straight & nearer_by_front);
   }
   const Floats at = front_x * ray_y - front_y * ray_x;
   const Floats width = length * ray_y;
   const Floats slack = grazing * width;
-  return bits(worth & (at >= -slack) & (at <= width + slack) & (distance < farther * all(1 - single_rounding)));
+  return bits(worth & (at >= -slack) & (at <= width + slack) & nearer_by_front);
 }
 
 /// Calls `visit` for those of n items that `chosen` names, which looks at four at a time, in order.
 template <typename Chosen, typename Visit>
 [[gnu::always_inline]] inline void for_each_of_four(std::size_t n, const Chosen& chosen, const Visit& visit) {
   constexpr std::size_t most = 32;
-  for (std::size_t first = 0; first < n; first += most) {
-    std::uint32_t mask = 0;
-    for (std::size_t i = first; i < std::min(n, first + most); i += 4) mask |= chosen(i) << (i - first);
-    if (n - first < most) mask &= (1U << (n - first)) - 1;
+  std::size_t first = 0;
+  do {
+    const std::size_t end = std::min(n - first, most);
+    std::uint64_t mask = 0;
+    for (std::size_t i = 0; i < end; i += 4) mask |= std::uint64_t{chosen(first + i)} << i;
+    mask &= (std::uint64_t{1} << end) - 1;
     for (; mask != 0; mask &= mask - 1) visit(first + static_cast<std::size_t>(std::countr_zero(mask)));
-  }
+    first += most;
+  } while (first < n);
 }
 
 class Propagation {
@@ -213,6 +221,7 @@ class Propagation {
       : mesh_(mesh),
         fans_(fans),
         arrivals_(mesh.n_vertices(), Arrival{}),
+        at_hand_(fans),
         around_(fans.most_spokes() + 6),
         queue_(bucket_step),
         ways_(mesh) {}
@@ -225,16 +234,19 @@ class Propagation {
   void start_at(std::uint32_t vertex, double distance, Arrival arrival);
   void start_ways(std::span<const StraightWays::Way> ways, double before, const Arrival& arrival);
   void start_from(const SourceSet& sources, std::uint32_t k, std::size_t most_faces);
-  bool is_corner(const SourceSet& sources, const SourceElement& point) const;
-  void settle(std::uint32_t vertex);
-  void walk_along_edges(const Arrival& here, std::uint32_t vertex, const FanLayout::Fan& fan);
-  void step_through_face(const Arrival& here, const FanLayout::Fan& fan, std::size_t i, bool to_left);
+  bool is_corner(const SourceSet& sources, const SourceElement& point);
+  void settle(std::uint32_t vertex, const Fan& fan);
+  void take_batch();
+  void walk_along_edges(const Arrival& here, std::uint32_t vertex, const Fan& fan);
+  void step_through_face(const Arrival& here, const Fan& fan, std::size_t i, bool to_left);
   void hand_over(std::uint32_t vertex, const Arrival& arrival);
-  void look_ahead() const;
 
   const TriangleMesh& mesh_;
   const FanLayout& fans_;
   LargeVector<Arrival> arrivals_;
+  FanBatch at_hand_;
+  std::array<std::uint32_t, FanBatch::most_fans> taken_{};  ///< whose fans they are
+  std::size_t n_taken_ = 0;
   std::vector<Arrival> around_;  ///< the fan at hand, from the spoke before the first one to the one after the last
   BucketQueue queue_;
   StraightWays ways_;
@@ -254,16 +266,18 @@ class Propagation {
 
 /// Hands the distance of a vertex on to its neighbours: through every edge from it whose other end is settled as well
 /// to the third vertex of the face, and along all edges.
-void Propagation::settle(std::uint32_t vertex) {
+void Propagation::settle(std::uint32_t vertex, const Fan& fan) {
   Arrival& own = arrivals_[vertex];
   if ((own.root & is_settled) != 0) return;
   const Arrival here{own.distance, own.bent, own.source, own.root | is_settled};
   own.root = here.root;
-  const FanLayout::Fan fan = fans_.fan(vertex);
-  const std::size_t n = fan.spokes.size();
+  const std::size_t n = fan.n_spokes;
   if (n == 0) return;
   Arrival* const around = around_.data() + 1;
-  for (std::size_t i = 0; i < n; ++i) around[i] = arrivals_[fan.spokes[i].end];
+  const Arrival* const known = arrivals_.data();
+  for (std::size_t i = 0; i < n; i += 4) {
+    for (std::size_t k = i; k < i + 4; ++k) put_words(words_of(known[fan.ends[k]]), around + k);
+  }
   around[-1] = fan.closed ? around[n - 2] : Arrival{};
   around[n] = fan.closed ? around[1] : Arrival{};
 
@@ -275,13 +289,13 @@ void Propagation::settle(std::uint32_t vertex) {
     }
   } else {
     for_each_of_four(
-        n - 1, [&](std::size_t i) { return steps_from(here, fan.spokes.data() + i, around + i); },
+        n - 1, [&](std::size_t i) { return steps_from(here, fan, i, around + i); },
         [&](std::size_t i) { step_through_face(here, fan, i, around[i].distance <= around[i + 1].distance); });
   }
   walk_along_edges(here, vertex, fan);
 }
 
-void Propagation::walk_along_edges(const Arrival& here, std::uint32_t vertex, const FanLayout::Fan& fan) {
+void Propagation::walk_along_edges(const Arrival& here, std::uint32_t vertex, const Fan& fan) {
   Arrival along{0, here.bent, here.source, here.root & ~marks};
   if (fan.bends) along = {0, here.distance, vertex, along.root};
   if (fan.bends_sharply) {
@@ -289,25 +303,23 @@ void Propagation::walk_along_edges(const Arrival& here, std::uint32_t vertex, co
     start_ways(ways_.from_vertex(static_cast<Index>(vertex), most_faces_at_bend), here.distance * fans_.unit(), along);
   }
   const Arrival* const around = around_.data() + 1;
-  const FanSpoke* const spokes = fan.spokes.data();
   for_each_of_four(
-      fan.spokes.size(),
+      fan.n_spokes,
       [&](std::size_t i) {
-        const Floats distance = all(here.distance) + records(spokes + i).second;
+        const Floats distance = all(here.distance) + words_at(fan.length + i);
         return bits(distance < records(around + i).first * all(1 - single_rounding));
       },
       [&](std::size_t i) {
-        along.distance = here.distance + spokes[i].length;
-        hand_over(spokes[i].end, along);
+        along.distance = here.distance + fan.length[i];
+        hand_over(fan.ends[i], along);
       });
 }
 
 /// In the face between spokes i and i + 1, through one of them to the end of the other.
-[[gnu::always_inline]] inline void Propagation::step_through_face(const Arrival& here, const FanLayout::Fan& fan,
-                                                                  std::size_t i, bool to_left) {
-  const FanSpoke* const spokes = fan.spokes.data();
+[[gnu::always_inline]] inline void Propagation::step_through_face(const Arrival& here, const Fan& fan, std::size_t i,
+                                                                  bool to_left) {
   Arrival* const around = around_.data() + 1;
-  const std::size_t n_faces = fan.spokes.size() - 1;
+  const std::size_t n_faces = fan.n_spokes - 1;
   const std::size_t side = to_left ? i : i + 1;  // through the spoke to this one
   const std::size_t ahead = to_left ? i + 1 : i;
   if ((around[side].root & is_settled) == 0) return;
@@ -318,23 +330,22 @@ void Propagation::walk_along_edges(const Arrival& here, std::uint32_t vertex, co
   std::size_t behind = to_left ? i - 1 : i + 2;
   if (to_left && i == 0) behind = n_faces - 1;
   if (!to_left && i + 1 == n_faces) behind = 1;
-  const FanSpoke& face = spokes[i];
-  const FanSpoke& back = spokes[to_left ? behind : i + 1];
-  const float front_length = spokes[ahead].length;
-  const float back_length = spokes[behind].length;
+  const std::size_t back = to_left ? behind : i + 1;  // the face behind
+  const float front_length = fan.length[ahead];
+  const float back_length = fan.length[behind];
   const Door door{here,
                   around[side],
                   around[behind],
-                  spokes[behind].end,
-                  spokes[side].length,
-                  {back_length * back.cosine, -back_length * back.sine},
-                  {front_length * face.cosine, front_length * face.sine}};
+                  fan.ends[behind],
+                  fan.length[side],
+                  {back_length * fan.cosine[back], -back_length * fan.sine[back]},
+                  {front_length * fan.cosine[i], front_length * fan.sine[i]}};
   Arrival arrival;
   if (!step_through(door, around[ahead].distance, arrival)) return;
-  around[ahead] = arrival;
+  put_words(words_of(arrival), around + ahead);
   if (fan.closed && ahead == 0) around[n_faces] = arrival;
   if (fan.closed && ahead == n_faces) around[0] = arrival;
-  hand_over(spokes[ahead].end, arrival);
+  hand_over(fan.ends[ahead], arrival);
 }
 
 /// Arrives at a vertex after so many mm.
@@ -349,11 +360,13 @@ void Propagation::start_ways(std::span<const StraightWays::Way> ways, double bef
 
 /// Whether the front around a point of a source is a circle: at single points, ends and corners, not where two segments
 /// go on into each other.
-bool Propagation::is_corner(const SourceSet& sources, const SourceElement& point) const {
+bool Propagation::is_corner(const SourceSet& sources, const SourceElement& point) {
   if (point.segment_before == no_index || point.segment_after == no_index) return true;
   const Support support = support_of(mesh_, point.a);
   if (support.kind == Support::Kind::vertex && mesh_.is_boundary_vertex(support.index)) {
-    return fans_.bends(static_cast<std::uint32_t>(support.index));
+    at_hand_.clear();
+    at_hand_.add(static_cast<std::uint32_t>(support.index), arrivals_.data());
+    return at_hand_[0].bends;
   }
   const auto direction = [&](Index k) -> Vec3 {
     const SourceElement& segment = sources.elements()[k];
@@ -401,24 +414,36 @@ void Propagation::start_from(const SourceSet& sources, std::uint32_t k, std::siz
   }
 }
 
-/// Most of the time would go into waiting for memory: fetches what items further back in the queue are about to read.
-void Propagation::look_ahead() const {
-  fans_.prefetch_head(queue_.ahead(12));
-  const std::uint32_t near = queue_.ahead(6);
-  __builtin_prefetch(&arrivals_[near], 1);
-  fans_.prefetch(near);
+/// Takes the next few items out of the queue and works out their fans, those of vertices that are not settled. Most of
+/// the time would go into waiting for memory: fetches what items further back are about to read.
+void Propagation::take_batch() {
+  n_taken_ = 0;
+  at_hand_.clear();
+  for (std::size_t left = queue_.n_next(); left > 0 && !at_hand_.full(); --left) {
+    fans_.prefetch_head(queue_.ahead(24));
+    const std::uint32_t near = queue_.ahead(16);
+    __builtin_prefetch(&arrivals_[near], 1);
+    fans_.prefetch_ring(near);
+    fans_.prefetch_positions(queue_.ahead(8));
+    const std::uint32_t vertex = queue_.pop();
+    if ((arrivals_[vertex].root & is_settled) != 0) continue;
+    taken_[n_taken_++] = vertex;
+    at_hand_.add(vertex, arrivals_.data());
+  }
 }
 
 void Propagation::run(Progress& progress) {
+  constexpr std::size_t report_every = 65536;
   std::size_t n_settled = 0;
   while (!queue_.empty()) {
-    const std::uint32_t vertex = queue_.pop();
-    look_ahead();
-    if (++n_settled % 65536 == 0) {
+    take_batch();
+    for (std::size_t i = 0; i < n_taken_; ++i) settle(taken_[i], at_hand_[i]);
+    const std::size_t n_before = n_settled;
+    n_settled += n_taken_;
+    if (n_before / report_every != n_settled / report_every) {
       progress.checkpoint();
       progress.at(std::min(1.0, static_cast<double>(n_settled) / (2.0 * static_cast<double>(arrivals_.size()))));
     }
-    settle(vertex);
   }
 }
 
