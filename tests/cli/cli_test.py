@@ -391,7 +391,7 @@ class Plan(Program):
         self.assertEqual(summary["spacing"], 4)
         self.assertAlmostEqual(summary["length_ratio"], summary["cover_length"] * 4 / (80 * 50))
         self.assertGreater(summary["covered_fraction"], 0.99)
-        for key in ["pieces", "lifts", "links_length", "min_radius", "sharp_corners", "peak_memory_mb", "warnings"]:
+        for key in ["pieces", "lifts", "links_length", "min_radius", "sharp_corners", "tight_turns", "peak_memory_mb", "warnings"]:
             self.assertIn(key, summary)
         self.assertEqual(set(summary["gap"]), {"max", "p99", "mean", "cv"})
         header = self.read(os.path.join(out, "impact.csv")).decode().splitlines()[0]

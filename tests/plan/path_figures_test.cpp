@@ -81,6 +81,24 @@ TEST(PathFigures, ACornerCutIntoTinyChordsIsOneCorner) {
   EXPECT_EQ(path_figures(curve, 1).sharp_corners, 1);
 }
 
+TEST(PathFigures, ATurnIsTightWhereItIsTooShortForItsSpacing) {
+  // a quarter of a spacing on either side sees a turn by 0.25 / radius
+  const double turn = std::numbers::pi / 4;
+  EXPECT_EQ(path_figures(arc(1.05 * 0.25 / turn, 30, 3000), 1).tight_turns, 0);
+  EXPECT_GT(path_figures(arc(0.9 * 0.25 / turn, 30, 3000), 1).tight_turns, 0);
+  // a right angle that is rounded so that no corner is left still is one turn
+  ImpactCurve curve;
+  const double radius = 0.09;
+  curve.points.push_back(at(Vec3(-10, 0, 0)));
+  for (int i = 0; i <= 60; ++i) {
+    const double phi = std::numbers::pi / 2 * i / 60;
+    curve.points.push_back(at(radius * Vec3(std::sin(phi), 1 - std::cos(phi), 0)));
+  }
+  curve.points.push_back(at(Vec3(radius, 10, 0)));
+  EXPECT_EQ(path_figures(curve, 1).sharp_corners, 0);
+  EXPECT_EQ(path_figures(curve, 1).tight_turns, 1);
+}
+
 TEST(PathFigures, ZigzagNoiseOfTinyChordsIsNoCorner) {
   ImpactCurve curve;
   for (int i = 0; i <= 100000; ++i) curve.points.push_back(at(Vec3(1e-4 * i, i % 2 ? 1e-4 : 0, 0)));

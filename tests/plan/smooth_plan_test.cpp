@@ -148,6 +148,7 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     job.smooth = 4;
     const PlanResult smooth = run_plan(job);
     EXPECT_LT(smooth.figures.sharp_corners, 0.2 * sharp.figures.sharp_corners) << name;
+    EXPECT_LT(smooth.figures.tight_turns, 0.5 * sharp.figures.tight_turns) << name;
     EXPECT_LE(smooth.figures.lifts, sharp.figures.lifts) << name;
     EXPECT_LE(smooth.gap.max, 1.05 * job.spacing) << name;
     EXPECT_GT(smooth.gap.covered_fraction, 0.999) << name;
@@ -159,14 +160,14 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     EXPECT_GT(smooth.smoothing->gap_before, 1.15 * job.spacing) << name;
     // what was chosen is the path that came out, and no other way that was planned costs less
     const auto cost = [&](const GapRepairCost& way) {
-      return way.length + job.spacing * (20 * way.lifts + 5 * way.sharp_corners);
+      return way.length + job.spacing * (20 * way.lifts + 5 * way.tight_turns);
     };
     const auto& ways = smooth.smoothing->costs;
     const auto chosen =
         std::find_if(ways.begin(), ways.end(), [&](const auto& way) { return way.repair == smooth.smoothing->repair; });
     ASSERT_NE(chosen, ways.end());
     EXPECT_NEAR(chosen->length, smooth.figures.cover_length + smooth.figures.links_length, 1e-9 * chosen->length);
-    EXPECT_EQ(chosen->sharp_corners, smooth.figures.sharp_corners);
+    EXPECT_EQ(chosen->tight_turns, smooth.figures.tight_turns);
     for (const GapRepairCost& way : ways) {
       if (way.planned) {
         EXPECT_LE(cost(*chosen), cost(way)) << name;

@@ -366,7 +366,8 @@ class BumpBuilder {
     const Vec3 aim = spot_.cells.front().position - foot.position;
     const Vec3& normal = mesh_.face_normal(foot.at.face);
     const Vec3 aside = (aim - normal.dot(aim) * normal).stableNormalized();
-    for (double height = swell_step; height <= highest_swell; height += swell_step) {
+    const double missing = scale_ * spot_.cells.front().distance - limit_;
+    for (double height = std::max(swell_step, missing / spacing_); height <= highest_swell; height += swell_step) {
       const double h = height * spacing_;
       double half_width = std::max(std::numbers::pi * std::sqrt(0.5 * h * 1.1 * radius_), 0.05 * spacing_);
       for (; half_width <= broadest_swell * spacing_; half_width *= broadening) {
@@ -477,6 +478,8 @@ std::optional<Replacement> bump_into(const SurfaceLinker& linker, const SmoothNo
 std::optional<Replacement> swell_into(const SurfaceLinker& linker, const SmoothNormals& normals,
                                       const ImpactCurve& curve, const CoverField& cover, const OpenSpot& spot,
                                       const BumpLimits& limits) {
+  // no point of a swell moves farther than its top
+  if (spot.cells.front().distance - limits.reach > highest_swell * limits.spacing) return std::nullopt;
   return BumpBuilder(linker, normals, curve, cover, spot, limits).best_swell();
 }
 

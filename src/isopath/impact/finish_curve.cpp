@@ -14,6 +14,9 @@ namespace {
 /// Swells of a curve that was rounded with the default may add to the turn of a corner, and so close what its rounding
 /// opened.
 constexpr double swell_radius_over_default = 0.85;
+/// Swells among smooth passes turn with no less than this, in spacings: a machine does not slow down there.
+constexpr double gentle_radius = 0.25;
+constexpr int rounds_of_gentle_swells = 2;
 /// Rounding changes bumps: before it, it is enough that they are there.
 constexpr int rounds_before_rounding = 2;
 
@@ -70,13 +73,20 @@ std::vector<TightPlace> round_corners(const SurfaceLinker& linker, const SmoothN
 
 void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
                   const FinishOptions& options, Progress& progress) {
-  if (limits.radius > 0) limits.most_rounds = rounds_before_rounding;
   progress.stage("wide gaps");
+  if (options.gently) {
+    GapLimits gentle = limits;
+    gentle.form = GapForm::swells;
+    gentle.radius = std::max(limits.radius, gentle_radius * limits.spacing);
+    gentle.most_rounds = rounds_of_gentle_swells;
+    close_gaps_everywhere(linker, normals, plan.curve, gentle, progress);
+  }
+  if (limits.radius > 0) limits.most_rounds = rounds_before_rounding;
   ClosedGaps closed = close_gaps_everywhere(linker, normals, plan.curve, limits, progress);
   if (limits.radius == 0) return;
   plan.radius = limits.radius;
   plan.tight = round_corners(linker, normals, plan.curve, limits.radius, closed.unsettled, progress);
-  limits.round = true;
+  limits.form = GapForm::round;
   limits.most_rounds = GapLimits{}.most_rounds;
   if (!options.radius_first) limits.radius *= swell_radius_over_default;
   closed = close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress);
@@ -94,7 +104,7 @@ void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, Imp
     changes += closed.count + static_cast<int>(moved.size());
   }
   // where only a corner or a loop reaches, the gap matters more
-  limits.round = false;
+  limits.form = GapForm::bumps;
   limits.radius = 0;
   changes += close_gaps_beside(linker, normals, plan.curve, closed.unsettled, limits, progress).count;
   if (changes > 0) plan.tight = tight_places(linker.mesh(), plan.curve, plan.radius, progress);

@@ -14,6 +14,7 @@ inline constexpr double default_radius_in_spacings = 0.08;
 
 struct FinishOptions {
   bool radius_first = false;  ///< the radius was asked for: it comes before the last gaps
+  bool gently = false;        ///< passes are smooth: gaps that wide, gentle swells can close are closed by these first
   bool taut = false;          ///< draw the curve tight in the end (taut_curve.h), unless the radius comes first
 };
 

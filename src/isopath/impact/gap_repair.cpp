@@ -31,6 +31,8 @@ constexpr double shortest_cut = 0.3;
 constexpr double short_bump = 0.15;
 /// Where they go farther than this from the curve, in spacings, a loop is shorter than bumps side by side.
 constexpr double highest_row = 0.9;
+/// Of the half circle that a way along both sides of a curve ends with: so many on its radius.
+constexpr double points_of_end = 8;
 /// Along an open level the curve turns back by a half circle, which rounding leaves as it is.
 constexpr double way_back_over_radius = 2.2;
 /// What bumps take away beside them the next ones make good; slim ones end the to and fro.
@@ -79,22 +81,59 @@ std::vector<Contour> loops_in(const TriangleMesh& mesh, const ExactField& field,
   return kept;
 }
 
-/// The closed curve around an open one at a small distance, from where that begins.
+/// An open curve as it is, but with points closer together within a distance from its ends.
+struct MeasuredCurve {
+  std::vector<SurfacePoint> points;
+  std::vector<double> to_end;  ///< along the curve, to the nearer end
+};
+
+MeasuredCurve fine_at_ends(const TriangleMesh& mesh, const std::vector<SurfacePoint>& open, double distance) {
+  const auto measured = [&](std::vector<SurfacePoint> points) {
+    MeasuredCurve curve{std::move(points), {0}};
+    std::vector<double>& to_end = curve.to_end;
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+      to_end.push_back(to_end.back() +
+                       (position_of(mesh, curve.points[i]) - position_of(mesh, curve.points[i - 1])).norm());
+    const double whole = to_end.back();
+    for (double& arc : to_end) arc = std::min(arc, whole - arc);
+    return curve;
+  };
+  const MeasuredCurve coarse = measured(open);
+  std::vector<SurfacePoint> points{open.front()};
+  for (std::size_t i = 1; i < open.size(); ++i) {
+    const Index face = common_face(mesh, open[i - 1], open[i]);
+    if (face != no_index && std::min(coarse.to_end[i - 1], coarse.to_end[i]) < distance) {
+      const Vec3 from = express_in(mesh, open[i - 1], face).barycentric;
+      const Vec3 to = express_in(mesh, open[i], face).barycentric;
+      const double length = (position_of(mesh, open[i]) - position_of(mesh, open[i - 1])).norm();
+      const int parts = static_cast<int>(std::clamp(std::ceil(points_of_end * length / distance), 1.0, 1000.0));
+      for (int k = 1; k < parts; ++k) points.push_back({face, from + (to - from) * (static_cast<double>(k) / parts)});
+    }
+    points.push_back(open[i]);
+  }
+  return measured(std::move(points));
+}
+
+/// The closed curve around an open one at a distance, from where that begins; half circles close it at both ends.
 Contour both_sides_of(const SurfaceLinker& linker, const Contour& open, double distance) {
   const TriangleMesh& mesh = linker.mesh();
+  const MeasuredCurve middle = fine_at_ends(mesh, open.points, distance);
+  const std::size_t n = middle.points.size();
   SurfaceCurve around;
   const auto add_beside = [&](std::size_t i, double side) {
-    const Vec3 along = position_of(mesh, open.points[std::min(i + 1, open.points.size() - 1)]) -
-                       position_of(mesh, open.points[i > 0 ? i - 1 : 0]);
-    const Vec3 aside = mesh.face_normal(open.points[i].face).cross(along).stableNormalized();
+    const Vec3 along =
+        position_of(mesh, middle.points[std::min(i + 1, n - 1)]) - position_of(mesh, middle.points[i > 0 ? i - 1 : 0]);
+    const Vec3 aside = mesh.face_normal(middle.points[i].face).cross(along).stableNormalized();
+    const double inside = std::max(0.0, 1 - middle.to_end[i] / distance);
+    const double beside = distance * std::sqrt(1 - inside * inside);
     const NearestPoint there =
-        linker.locator().nearest(position_of(mesh, open.points[i]) + side * distance * aside, 2 * distance);
+        linker.locator().nearest(position_of(mesh, middle.points[i]) + side * beside * aside, 2 * distance);
     if (there.at.valid()) linker.extend(around, there.at);
   };
-  around.add(mesh, open.points.front());
-  for (std::size_t i = 1; i < open.points.size(); ++i) add_beside(i, -1);
-  for (std::size_t i = open.points.size(); i-- > 1;) add_beside(i, 1);
-  linker.extend(around, open.points.front());
+  around.add(mesh, middle.points.front());
+  for (std::size_t i = 1; i < n; ++i) add_beside(i, -1);
+  for (std::size_t i = n - 1; i-- > 0;) add_beside(i, 1);
+  linker.extend(around, middle.points.front());
   around.points.pop_back();
   return {.level = open.level, .closed = true, .points = std::move(around.points)};
 }
@@ -193,10 +232,11 @@ class GapCloser {
   std::optional<Replacement> bump_to(const OpenSpot& spot, const CoverField& cover, int round) const {
     const BumpLimits limits{limit() - bump_margin * limits_.spacing, limits_.spacing, limits_.radius,
                             round >= rounds_of_broad_bumps, progress_};
-    if (!limits_.round) return bump_into(linker_, normals_, curve_, cover, spot, limits);
+    if (limits_.form == GapForm::bumps) return bump_into(linker_, normals_, curve_, cover, spot, limits);
     if (round < rounds_of_swells) {
       if (auto swell = swell_into(linker_, normals_, curve_, cover, spot, limits)) return swell;
     }
+    if (limits_.form == GapForm::swells) return std::nullopt;
     return turn_into(linker_, normals_, curve_, cover, spot, limits);
   }
 
@@ -211,7 +251,9 @@ class GapCloser {
     const double w = limits_.spacing;
     Bumps whole{{}, infinity};
     if (auto bump = bump_to(spot, cover, round)) whole = {{*bump}, bump->added};
-    if (limits_.round || whole.added <= short_bump * w || spot.cells.front().distance > highest_row * w) return whole;
+    if (limits_.form != GapForm::bumps || whole.added <= short_bump * w ||
+        spot.cells.front().distance > highest_row * w)
+      return whole;
     Bumps parts;
     for (const OpenSpot& half : halves_of(spot, shortest_cut * w)) {
       Bumps bumps = bumps_to(half, cover, round);
@@ -223,7 +265,7 @@ class GapCloser {
 
   /// Whether bumps are shorter than a loop, which goes along the spot twice, would be, or no loop can be made.
   bool better_than_loop(const Bumps& bumps, const OpenSpot& spot, int round) const {
-    if (limits_.round || spot.cells.front().distance <= first_loop * limits_.spacing) return true;
+    if (limits_.form != GapForm::bumps || spot.cells.front().distance <= first_loop * limits_.spacing) return true;
     if (bumps.changes.size() == 1 || (!bumps.changes.empty() && round >= rounds_of_broad_bumps)) return true;
     Box3 box;
     for (const SpotCell& cell : spot.cells) box.extend(cell.position);

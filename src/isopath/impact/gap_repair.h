@@ -19,14 +19,19 @@ inline constexpr double widest_gap = 1.03;
 /// The same where passes are to stay what they are: fronts that meet at a right angle leave less.
 inline constexpr double widest_corner_gap = 1.15;
 
+/// How wide gaps are closed.
+enum class GapForm {
+  bumps,  ///< and loops, which have corners
+  round,  ///< the curve is round and is to stay so: by swells and full turns with at least the radius, or not at all
+  swells  ///< as gently as can be: by swells with at least the radius, or not at all
+};
+
 struct GapLimits {
   double spacing = 0;                         ///< of the passes, in the lengths of the metric
   double widest = widest_gap;                 ///< gaps wider than this are closed, in spacings
   const IntrinsicGeometry* metric = nullptr;  ///< null for lengths in space
   double radius = 0;  ///< corners are rounded with this radius afterwards, mm: bumps go as far as that takes
-  /// The curve is round already and is to stay so: swells and full turns with at least the radius take the place of
-  /// bumps and loops, and what they do not reach stays open.
-  bool round = false;
+  GapForm form = GapForm::bumps;
   int most_rounds = 12;  ///< what a bump leaves open beside it is closed in the next round
 };
 

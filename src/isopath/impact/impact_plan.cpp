@@ -58,10 +58,12 @@ void finish(const SurfaceLinker& linker, const SmoothNormals& normals, const Imp
                    .metric = options.metric,
                    .radius = options.min_radius};
   const bool two_way = options.pattern == Pattern::two_way;
-  if (limits.radius == 0 && (two_way || options.round_corners))
+  if (limits.radius == 0 && (two_way || options.smooth_levels))
     limits.radius = default_radius_in_spacings * options.spacing;
   finish_curve(linker, normals, plan, limits,
-               {.radius_first = options.min_radius > 0, .taut = (two_way || options.round_corners) && !options.metric},
+               {.radius_first = options.min_radius > 0,
+                .gently = options.smooth_levels,
+                .taut = (two_way || options.smooth_levels) && !options.metric},
                progress);
 }
 

@@ -38,7 +38,9 @@ struct ImpactOptions {
   /// 0.08 spacings, which costs no coverage, and those of other patterns stay. Trochoidal: circles are as large as that
   /// takes, unless their radius is given; bumps and links keep their corners.
   double min_radius = 0;
-  bool round_corners = false;  ///< of every pattern as those of two-way curves, and draws it as tight
+  /// The function is smooth, and so are its levels: gaps are closed as gently as can be. Rounds the corners of every
+  /// pattern as those of two-way curves, and draws it as tight.
+  bool smooth_levels = false;
   /// What the function and the spacing are measured in; null for lengths in space. Must outlive the call.
   const IntrinsicGeometry* metric = nullptr;
   void validate() const;  ///< throws Error(bad_usage) naming the field, its value and its limit

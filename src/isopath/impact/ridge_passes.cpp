@@ -11,6 +11,13 @@
 namespace isopath {
 namespace {
 
+/// Between the ways out and back, in spacings: together they cover twice that, and leave nothing open between them.
+constexpr double hairpin_width = 1;
+/// Shorter stretches than this, in spacings, are left to bumps.
+constexpr double shortest_stretch = 2;
+/// Wide gaps no farther apart than this along a ridge, in spacings, belong to one stretch.
+constexpr double joined = 4;
+
 /// A ridge as a curve on the surface with a point every tenth of a spacing.
 std::vector<SurfacePoint> fine_points(const SurfaceLinker& linker, std::span<const SurfacePoint> ridge,
                                       double spacing) {
@@ -32,8 +39,8 @@ std::vector<SurfacePoint> fine_points(const SurfaceLinker& linker, std::span<con
   return points;
 }
 
-/// The stretches of a ridge that are worth a pass: from one wide gap to the next while these are no farther apart than
-/// two spacings, and out at both ends until the gaps grow again; each starts where it is nearer to the curve.
+/// The stretches of a ridge that are worth a pass: from one wide gap to the next while these follow each other
+/// closely, and out at both ends until the gaps grow again; each starts where it is nearer to the curve.
 std::vector<Contour> wide_stretches(const TriangleMesh& mesh, const ExactField& distance,
                                     std::vector<SurfacePoint> points, double spacing, double wide) {
   std::vector<double> gap;
@@ -48,13 +55,13 @@ std::vector<Contour> wide_stretches(const TriangleMesh& mesh, const ExactField& 
   for (std::size_t i = 0; i < n; ++i) {
     if (!(gap[i] > wide)) continue;
     std::size_t last = i;
-    for (std::size_t k = i + 1; k < n && arc[k] - arc[last] <= 2 * spacing; ++k) {
+    for (std::size_t k = i + 1; k < n && arc[k] - arc[last] <= joined * spacing; ++k) {
       if (gap[k] > wide) last = k;
     }
     std::size_t begin = i;
     while (begin > 0 && gap[begin - 1] < gap[begin]) --begin;
     while (last + 1 < n && gap[last + 1] < gap[last]) ++last;
-    if (last > begin) {
+    if (arc[last] - arc[begin] >= shortest_stretch * spacing) {
       Contour& stretch = stretches.emplace_back();
       stretch.points.assign(points.begin() + begin, points.begin() + last + 1);
       if (gap[last] < gap[begin]) std::reverse(stretch.points.begin(), stretch.points.end());
@@ -76,7 +83,7 @@ int add_ridge_passes(const SurfaceLinker& linker, const SmoothNormals& normals,
     for (const Contour& stretch : wide_stretches(mesh, cover.field, fine_points(linker, ridge, limits.spacing),
                                                  limits.spacing, limits.widest * limits.spacing)) {
       progress.checkpoint();
-      passes.push_back(detour_along(stretch, linker, normals, curve, cover));
+      passes.push_back(detour_along(stretch, linker, normals, curve, cover, hairpin_width * limits.spacing));
     }
   }
   return replace(mesh, curve, std::move(passes));

@@ -8,6 +8,7 @@
 #include "isopath/impact/cover_field.h"
 #include "isopath/impact/gap_repair.h"
 #include "isopath/impact/ridge_passes.h"
+#include "isopath/mesh/disjoint_sets.h"
 #include "isopath/mesh/normals.h"
 #include "isopath/mesh/surface_walk.h"
 #include "isopath/plan/level_density.h"
@@ -19,18 +20,22 @@ namespace {
 using Ridges = std::vector<std::vector<SurfacePoint>>;
 
 constexpr double lift_over_spacing = 20;
-/// Whoever asks for smoothing would rather go farther than stop.
-constexpr double corner_over_spacing = 5;
+/// Whoever asks for smoothing would rather go farther than slow down.
+constexpr double turn_over_spacing = 5;
 /// Rounds of planning and measuring; each comes closer.
-constexpr int most_rounds = 3;
-/// Gaps that levels or a pass along a ridge are there for, in spacings; what is less wide is left to bumps.
+constexpr int most_rounds = 4;
+/// Where no gap is wider than this, in spacings, there is nothing to choose, and a bump is low.
 constexpr double wide = 1.15;
+/// Hairpins along ridges go on through gaps wider than this, in spacings.
+constexpr double wide_on_ridges = 1.1;
 /// How far the curve may be moved when it is brought to the part's own mesh.
 constexpr double chord_over_spacing = 1e-3;
 /// Closing a draft's gaps adds so much to its length; one that could not save more is not worth a plan.
 constexpr double least_added = 1.03;
-/// What rounds aim at, so that a few of them get there.
-constexpr double aim = 1.08;
+/// Closer levels are to leave no more than what counts as wide anyway.
+constexpr double aim = widest_gap;
+/// A bump turns in, round its tip, and back: twice by more than 45 degrees at least.
+constexpr Index turns_of_bump = 2;
 
 double distance_from_chord(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 chord = to - from;
@@ -74,26 +79,27 @@ class Chooser {
         progress_(progress),
         even_(function, fine.metric ? *fine.metric : IntrinsicGeometry(fine.mesh), options.spacing) {
     options_.close_gaps = false;
-    options_.round_corners = true;
+    options_.smooth_levels = true;
   }
 
   RepairedPlan run() {
     RepairedPlan result;
     const ImpactPlan plan = draft(even_, options_.spacing);
-    std::vector<double> gaps = gaps_of(plan.curve);
+    const std::vector<double> gaps = gaps_of(plan.curve);
     result.gap_before = widest(gaps);
-    best_ = carried(plan);
-    if (result.gap_before > wide * options_.spacing) {
-      ImpactPlan ridged = best_;
-      consider(GapRepair::bumps, std::move(best_), options_.spacing);
-      if (has_ridge_passes(ridged)) consider(GapRepair::ridge_pass, std::move(ridged), options_.spacing);
-      lower_spacing_by_level(std::move(gaps));
-      lower_spacing(plan, result.gap_before);
-      result.chosen = chosen_;
-      result.costs = std::move(costs_);
-    } else {
-      finish_plan(part_, options_, best_, progress_);
+    if (result.gap_before <= wide * options_.spacing) {
+      result.plan = carried(plan);
+      finish_plan(part_, options_, result.plan, progress_);
+      return result;
     }
+    lower_spacing_by_level(gaps);
+    ImpactPlan on_part = carried(plan);
+    ImpactPlan ridged = on_part;
+    if (has_ridge_passes(ridged)) consider(GapRepair::ridge_pass, std::move(ridged), options_.spacing);
+    consider(GapRepair::bumps, std::move(on_part), options_.spacing, turns_of_bump * wide_places(gaps));
+    lower_spacing(plan, result.gap_before);
+    result.chosen = chosen_;
+    result.costs = std::move(costs_);
     result.plan = std::move(best_);
     return result;
   }
@@ -135,13 +141,31 @@ class Chooser {
     return widest;
   }
 
-  double cost_of(const GapRepairCost& way) const {
-    return way.length + options_.spacing * (lift_over_spacing * way.lifts + corner_over_spacing * way.sharp_corners);
+  /// Connected sets of vertices that lie in wide gaps.
+  Index wide_places(std::span<const double> gaps) const {
+    const auto is_open = [&](Index v) {
+      return std::isfinite(function_.values()[v]) && std::isfinite(gaps[v]) && gaps[v] > wide * options_.spacing;
+    };
+    const TriangleMesh& mesh = fine_.mesh;
+    DisjointSets places(mesh.n_vertices());
+    for (Index e = 0; e < mesh.n_edges(); ++e) {
+      const Index h = mesh.halfedge_of(e);
+      if (is_open(mesh.from(h)) && is_open(mesh.to(h))) places.join(mesh.from(h), mesh.to(h));
+    }
+    Index count = 0;
+    for (Index v = 0; v < mesh.n_vertices(); ++v) count += is_open(v) && places.root(v) == v;
+    return count;
   }
 
-  /// Closing the gaps of a draft only adds to it, but for its corners, which are rounded.
-  bool can_be_cheapest(const GapRepairCost& draft) const {
-    return least_added * draft.length + options_.spacing * lift_over_spacing * draft.lifts < least_;
+  double cost_of(const GapRepairCost& way) const {
+    return way.length + options_.spacing * (lift_over_spacing * way.lifts + turn_over_spacing * way.tight_turns);
+  }
+
+  /// Closing the gaps of a draft only adds to it, or hardly less.
+  bool can_be_cheapest(GapRepairCost draft, Index turns_to_come = 0) const {
+    draft.length *= least_added;
+    draft.tight_turns += turns_to_come;
+    return cost_of(draft) < least_;
   }
 
   GapRepairCost figures_of(GapRepair repair, const ImpactPlan& plan, double spacing) const {
@@ -149,15 +173,19 @@ class Chooser {
     return {.repair = repair,
             .length = figures.cover_length + figures.links_length,
             .lifts = figures.lifts,
-            .sharp_corners = figures.sharp_corners,
+            .tight_turns = figures.tight_turns,
             .spacing = spacing,
             .planned = false};
   }
 
-  /// Closes the gaps of a draft on the part's mesh, unless it costs more than another way already.
-  void consider(GapRepair repair, ImpactPlan plan, double spacing) {
+  /// Closes the gaps of a draft on the part's mesh, unless it costs more than another way already. Closing them makes
+  /// at least so many tight turns.
+  void consider(GapRepair repair, ImpactPlan plan, double spacing, Index turns_to_come = 0) {
     GapRepairCost& way = costs_.emplace_back(figures_of(repair, plan, spacing));
-    if (!can_be_cheapest(way)) return;
+    if (!can_be_cheapest(way, turns_to_come)) {
+      way.tight_turns += turns_to_come;
+      return;
+    }
     finish_plan(part_, options_, plan, progress_);
     way = figures_of(repair, plan, spacing);
     way.planned = true;
@@ -171,14 +199,14 @@ class Chooser {
     const SurfaceLocator locator(part_);
     const SmoothNormals normals(part_);
     const SurfaceLinker linker(part_, locator, progress_);
-    const GapLimits limits{.spacing = options_.spacing, .widest = wide, .metric = options_.metric};
+    const GapLimits limits{.spacing = options_.spacing, .widest = wide_on_ridges, .metric = options_.metric};
     return add_ridge_passes(linker, normals, ridges_, plan.curve, limits, progress_) > 0;
   }
 
   void lower_spacing_by_level(std::vector<double> gaps) {
     LevelDensity density = even_;
     ImpactPlan plan;
-    for (int round = 0; round < most_rounds && widest(gaps) > wide * options_.spacing; ++round) {
+    for (int round = 0; round < most_rounds && widest(gaps) > aim * options_.spacing; ++round) {
       if (!density.raise(gaps, aim * options_.spacing)) break;
       plan = draft(density, options_.spacing);
       if (!can_be_cheapest(figures_of(GapRepair::levels, plan, options_.spacing))) break;

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double bins_over_spacing = 0.25;
 constexpr double least_slope = 0.2;
+/// Share of a level's length along which passes may lie farther apart: about as much as there is on ridges.
+constexpr double flat_share = 0.15;
 constexpr double most_raised = 2;
 constexpr double most_at_once = 1.4;
 
@@ -33,15 +35,15 @@ FaceSlope slope_in(const VertexField& function, const IntrinsicGeometry& geometr
   return {slope, slope * twice_area};
 }
 
-/// The slope that is exceeded along half of the length; `otherwise` without parts.
-double median_slope(std::vector<FaceSlope>& parts, double otherwise) {
+/// The slope that is exceeded along nearly all of the length; `otherwise` without parts.
+double low_slope(std::vector<FaceSlope>& parts, double otherwise) {
   std::sort(parts.begin(), parts.end(), [](const FaceSlope& a, const FaceSlope& b) { return a.slope < b.slope; });
   double whole = 0;
   for (const FaceSlope& part : parts) whole += part.length;
   double below = 0;
   for (const FaceSlope& part : parts) {
     below += part.length;
-    if (below >= 0.5 * whole) return part.slope;
+    if (below >= flat_share * whole) return part.slope;
   }
   return otherwise;
 }
@@ -74,7 +76,7 @@ LevelDensity::LevelDensity(const VertexField& function, const IntrinsicGeometry&
   }
   double slope = 1;
   for (std::size_t bin = 0; bin < factor_.size(); ++bin) {
-    slope = std::max(median_slope(parts[bin], slope), least_slope);
+    slope = std::max(low_slope(parts[bin], slope), least_slope);
     factor_[bin] = 1 / slope;
   }
   most_ = factor_;

@@ -14,9 +14,9 @@ namespace isopath {
 /// isolines of even levels; a function that is stretched along its levels has the same isolines at other ones.
 class LevelDensity {
  public:
-  /// The density at which passes lie a spacing apart along half of the length of each level, in the geometry's lengths:
-  /// one over the median slope, 5 at most. The function must outlive the object. Throws Error(bad_usage) unless the
-  /// spacing, mm, is positive.
+  /// The density at which passes lie no farther than a spacing apart along nearly all of each level, in the geometry's
+  /// lengths, but for 15 % of it, where ridges are: one over the slope that the rest exceeds, 5 at most. The function
+  /// must outlive the object. Throws Error(bad_usage) unless the spacing, mm, is positive.
   LevelDensity(const VertexField& function, const IntrinsicGeometry& geometry, double spacing);
 
   /// The function stretched, so that even levels of the result lie that dense.

@@ -100,7 +100,7 @@ bool turns_sharply(const Vec3& arriving, const Vec3& leaving) {
   return arriving.dot(leaving) < std::cos(std::numbers::pi / 4) * arriving.norm() * leaving.norm();
 }
 
-Index count_corners(const Polyline& line, double reach) {
+Index count_turns(const Polyline& line, double reach) {
   Index count = 0;
   double last = -infinity;
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
@@ -135,7 +135,8 @@ PathFigures path_figures(const ImpactCurve& curve, double spacing, double radius
     figures.min_radius = std::min(figures.min_radius, smallest_radius(line, window));
   }
   for (const Polyline& line : stretches(curve, [](MoveKind kind) { return kind != MoveKind::lift; })) {
-    figures.sharp_corners += count_corners(line, spacing / 20);
+    figures.sharp_corners += count_turns(line, spacing / 20);
+    figures.tight_turns += count_turns(line, spacing / 4);
   }
   return figures;
 }

@@ -17,6 +17,9 @@ struct PathFigures {
   /// Turns by more than 45 degrees on the surface, seen over a twentieth of the spacing on either side, so that neither
   /// a chain of tiny chords hides a corner nor noise between them makes one.
   Index sharp_corners = 0;
+  /// Turns by more than 45 degrees on the surface, seen over a quarter of the spacing on either side: where a machine
+  /// that goes fast slows down, however the corner is rounded. A full circle this small is several.
+  Index tight_turns = 0;
 };
 
 /// `radius` is what corners were rounded with, mm; 0 where they were not. Throws Error(bad_usage) unless spacing > 0.

@@ -69,7 +69,7 @@ nlohmann::ordered_json smoothing_json(const PlanResult& result) {
     json["ways"].push_back({{"repair", name_of(way.repair)},
                             {"length", way.length},
                             {"lifts", way.lifts},
-                            {"sharp_corners", way.sharp_corners},
+                            {"tight_turns", way.tight_turns},
                             {"spacing", way.spacing},
                             {"planned", way.planned}});
   }
@@ -123,6 +123,7 @@ std::string summary_json(const PlanResult& result) {
                   {"covered_fraction", gap.covered_fraction},
                   {"min_radius", figures.min_radius},
                   {"sharp_corners", figures.sharp_corners},
+                  {"tight_turns", figures.tight_turns},
                   {"path_time_s", result.tool.points.empty() ? 0 : result.tool.points.back().time},
                   {"time_s", std::move(times)},
                   {"peak_memory_mb", result.peak_memory_mb},

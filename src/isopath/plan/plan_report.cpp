@@ -38,6 +38,7 @@ ReportTable figures_table(const PlanResult& result) {
            {"smallest radius", f.min_radius < infinity ? text(f.min_radius) : "straight",
             f.min_radius < infinity ? "mm" : "", "Along covering moves."},
            {"sharp corners", fmt::format("{}", f.sharp_corners), "", "Turns by more than 45 degrees."},
+           {"tight turns", fmt::format("{}", f.tight_turns), "", "Turns by more than 45 degrees within half a spacing."},
            {"time on the path", text(result.tool.points.empty() ? 0 : result.tool.points.back().time), "s",
             "Length over feed; accelerations are left out."}}};
 }
@@ -97,12 +98,12 @@ ReportTable smoothing_table(const PlanResult& result) {
                     {{"width", text(result.job.smooth), "mm", "Standard deviation of the averaging."},
                      {"widest gap before repair", text(smoothing.gap_before / result.spacing), "× spacing"},
                      {"gaps closed by", smoothing.repair ? std::string(name_of(*smoothing.repair)) : "nothing to close",
-                      "", "The way that makes the shortest path, of those below."}}};
+                      "", "The way that costs least, of those below: tight turns count as 5 spacings, lifts as 20."}}};
   for (const GapRepairCost& way : smoothing.costs) {
     table.rows.push_back({fmt::format("with {}", name_of(way.repair)),
                           fmt::format("{}{}", way.planned ? "" : "about ", text(way.length)), "mm",
-                          way.planned ? fmt::format("{} lifts, {} sharp corners, {} mm between passes.", way.lifts,
-                                                    way.sharp_corners, text(way.spacing))
+                          way.planned ? fmt::format("{} lifts, {} tight turns, {} mm between passes.", way.lifts,
+                                                    way.tight_turns, text(way.spacing))
                                       : "Estimated only, as it is too long anyway."});
   }
   return table;
