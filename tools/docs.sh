@@ -24,7 +24,7 @@ plan planar "${part[@]}" --pattern planar --direction 1,0,0 --spacing 40
 plan blade data/turbine_blade.off --unit cm --source boundary:0 --pattern spiral --spacing 40 --process spray --stand-off 150
 
 corners=(data/patch_100mm_a.off --source boundary --pattern spiral --spacing 5)
-plan smooth_off "${corners[@]}"
+plan smooth_off "${corners[@]}" --blend-form none
 plan smooth_on "${corners[@]}" --smooth 5
 
 picture part_with_path spiral --hide tool
