@@ -34,10 +34,10 @@ TEST(auto_pattern, is_a_meander_where_isolines_are_side_by_side) {
 }
 
 TEST(auto_pattern, is_two_way_where_that_saves_lifts_or_length) {
-  // a plate with three square holes: many families of isolines
+  // a plate with a square hole that is not in its middle: many families of isolines
   const TriangleMesh mesh =
-      test::planar_cells(40, 26, [](int i, int j) { return !(j > 7 && j < 17 && (i % 13) > 4 && (i % 13) < 10); });
-  ASSERT_EQ(mesh.boundary_loops().size(), 4u);
+      test::planar_cells(14, 14, [](int i, int j) { return !(j > 4 && j < 10 && i > 4 && i < 10); });
+  ASSERT_EQ(mesh.boundary_loops().size(), 2u);
   const ExactField field = ExactField::compute(mesh, boundary_source(mesh));
   const ChosenPlan chosen = choose(mesh, field, 1);
   EXPECT_EQ(chosen.pattern, Pattern::two_way);

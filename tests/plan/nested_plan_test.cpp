@@ -85,7 +85,7 @@ TEST(NestedPlan, SeveralHolesAreCutOpenAndGetOneSpiral) {
 }
 
 TEST(NestedPlan, HandlesGetATwoWayCurveAndAWarning) {
-  const PlanResult result = test::plan_spiral(test::torus(12, 8, 3, 1), Pattern::spiral, Blending::least, 0.7);
+  const PlanResult result = test::plan_spiral(test::torus(12, 8, 3, 1), Pattern::spiral, Blending::least, 1);
   EXPECT_EQ(result.pattern, Pattern::two_way);
   EXPECT_EQ(result.figures.lifts, 0);
   EXPECT_TRUE(std::any_of(result.warnings.begin(), result.warnings.end(),

@@ -138,7 +138,7 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
     TriangleMesh mesh;
     Pattern pattern;
   };
-  for (const auto& [name, mesh, pattern] : {Case{"smooth_square", planar_grid(10, 10, 60, 60), Pattern::spiral},
+  for (const auto& [name, mesh, pattern] : {Case{"smooth_square", planar_grid(8, 8, 48, 48), Pattern::spiral},
                                             Case{"smooth_l", scaled(l_shape(10), 3), Pattern::spiral}}) {
     Job job = smooth_job_on(mesh, name);
     job.pattern = pattern;
@@ -180,7 +180,7 @@ TEST(SmoothPlan, RoundsCornersAndClosesTheGaps) {
 }
 
 TEST(SmoothPlan, WorksWithEveryPatternSourceAndMetric) {
-  Job job = smooth_job_on(planar_grid(10, 8, 50, 40), "smooth_patterns");
+  Job job = smooth_job_on(planar_grid(8, 6, 40, 30), "smooth_patterns");
   job.spacing = 4;
   job.smooth = 5;
   const auto expect_covered = [](const PlanResult& result) {

@@ -52,7 +52,7 @@ TEST(SpiralChoices, OnlyDiscsWithTheirWholeRimAsSource) {
 }
 
 TEST(SpiralChoices, WhatIsChosenCostsLess) {
-  const TriangleMesh l = test::l_shape(12);
+  const TriangleMesh l = test::l_shape(9);
   const TriangleMesh dumbbell =
       test::planar_cells(22, 8, [](int i, int j) { return i < 8 || i >= 14 || (j >= 3 && j < 5); });
   for (const TriangleMesh* mesh : {&l, &dumbbell}) {
@@ -74,33 +74,36 @@ TEST(SpiralChoices, OnADoubleSpiralsHolesTheCheaperClosedCurveIsTaken) {
   const TriangleMesh two_holes =
       test::planar_cells(14, 6, [](int i, int j) { return j < 2 || j > 3 || (i != 3 && i != 10); });
   // levels from loop to loop are as good as can be
-  const TriangleMesh ring = test::open_cylinder(40, 8, 5, 4);
+  const TriangleMesh ring = test::open_cylinder(32, 6, 4, 3);
+  constexpr double spacing = 0.5;
   for (const TriangleMesh* mesh : {&two_holes, &ring}) {
-    const PlanResult result = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::automatic, 0.4);
+    const PlanResult result = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::automatic, spacing);
     ASSERT_TRUE(result.spiral && result.spiral->by_two_way && result.spiral->by_blend);
-    const double two_way = as_length(*result.spiral->by_two_way, 0.4);
-    const double nested = as_length(*result.spiral->by_blend, 0.4);
+    const double two_way = as_length(*result.spiral->by_two_way, spacing);
+    const double nested = as_length(*result.spiral->by_blend, spacing);
     EXPECT_EQ(result.spiral->blended, nested <= two_way);
     EXPECT_EQ(result.pattern, result.spiral->blended ? Pattern::double_spiral : Pattern::two_way);
-    EXPECT_NEAR(as_length(cost_of(result.impact.curve, 0.4, true), 0.4), std::min(nested, two_way), 1e-9 * nested);
+    EXPECT_NEAR(as_length(cost_of(result.impact.curve, 0.4, true), spacing), std::min(nested, two_way), 1e-9 * nested);
     const auto& points = result.impact.curve.points;
     EXPECT_LE((points.front().position - points.back().position).norm(), 1e-9) << "closed, whichever it is";
     EXPECT_EQ(result.job.blend, Blending::automatic) << "the job stays as it was given";
     EXPECT_EQ(result.job.sources, Job{}.sources);
-    EXPECT_EQ(text_of(*result.spiral, result.gap.area, 0.4).rfind(result.spiral->blended ? "double" : "two-way", 0), 0U)
+    EXPECT_EQ(text_of(*result.spiral, result.gap.area, spacing).rfind(result.spiral->blended ? "double" : "two-way", 0),
+              0U)
         << "says first what was taken";
     EXPECT_GE(result.gap.covered_fraction, 0.999);
 
-    const PlanResult told = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::least, 0.4);
+    const PlanResult told = test::plan_spiral(*mesh, Pattern::double_spiral, Blending::least, spacing);
     EXPECT_FALSE(told.spiral);
     EXPECT_EQ(told.pattern, Pattern::double_spiral);
-    expect_same_curve(
-        result, result.spiral->blended ? told : test::plan_spiral(*mesh, Pattern::two_way, Blending::automatic, 0.4));
+    expect_same_curve(result, result.spiral->blended
+                                  ? told
+                                  : test::plan_spiral(*mesh, Pattern::two_way, Blending::automatic, spacing));
   }
 }
 
 TEST(SpiralChoices, AChosenBlendIsTheOneThatMayBeAskedFor) {
-  const TriangleMesh l = test::l_shape(12);
+  const TriangleMesh l = test::l_shape(9);
   const PlanResult chosen = test::plan_spiral(l, Pattern::spiral, Blending::automatic, 1);
   ASSERT_TRUE(chosen.spiral && chosen.spiral->blended);
   const PlanResult asked = test::plan_spiral(l, Pattern::spiral, Blending::least, 1);
