@@ -367,7 +367,8 @@ class BumpBuilder {
     const Vec3& normal = mesh_.face_normal(foot.at.face);
     const Vec3 aside = (aim - normal.dot(aim) * normal).stableNormalized();
     const double missing = scale_ * spot_.cells.front().distance - limit_;
-    for (double height = std::max(swell_step, missing / spacing_); height <= highest_swell; height += swell_step) {
+    for (double height = swell_step; height <= highest_swell; height += swell_step) {
+      if (height * spacing_ < missing) continue;
       const double h = height * spacing_;
       double half_width = std::max(std::numbers::pi * std::sqrt(0.5 * h * 1.1 * radius_), 0.05 * spacing_);
       for (; half_width <= broadest_swell * spacing_; half_width *= broadening) {
