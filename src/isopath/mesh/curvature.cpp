@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/core/angle.h"
+
 namespace isopath {
 namespace {
 
@@ -37,7 +39,7 @@ double angle_of(const TriangleMesh& mesh, const std::vector<Index>& fan) {
   for (const Index h : fan) {
     const Vec3 a = mesh.position(mesh.to(h)) - mesh.position(mesh.from(h));
     const Vec3 b = mesh.position(mesh.from(TriangleMesh::prev(h))) - mesh.position(mesh.from(h));
-    sum += std::atan2(a.cross(b).norm(), a.dot(b));
+    sum += angle_between(a, b);
   }
   return sum;
 }

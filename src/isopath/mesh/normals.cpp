@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
+#include "isopath/core/angle.h"
 #include "isopath/core/error.h"
 
 namespace isopath {
@@ -64,11 +64,8 @@ std::vector<Vec3> face_normals(const TriangleMesh& mesh) {
 double corner_angle(const TriangleMesh& mesh, Index halfedge) {
   const Vec3 a = mesh.position(mesh.to(halfedge)) - mesh.position(mesh.from(halfedge));
   const Vec3 b = mesh.position(mesh.from(mesh.prev(halfedge))) - mesh.position(mesh.from(halfedge));
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return angle_between(a, b);
 }
-
-/// Angle between two unit vectors; accurate at 0 and π alike.
-double angle_between(const Vec3& a, const Vec3& b) { return 2 * std::atan2((a - b).norm(), (a + b).norm()); }
 
 }  // namespace
 

@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "isopath/plan/make_sources.h"
+
+#include "isopath/core/angle.h"
 
 namespace isopath {
 namespace {
@@ -18,7 +19,7 @@ class EdgeGraph {
       const Vec3 a = mesh.face_normal(TriangleMesh::face_of(h));
       const Vec3 b = mesh.face_normal(TriangleMesh::face_of(mesh.twin(h)));
       // A triangle without area has no normal, and hence no feature edge.
-      if (a.isZero(0) || b.isZero(0) || std::atan2(a.cross(b).norm(), a.dot(b)) <= angle) continue;
+      if (a.isZero(0) || b.isZero(0) || angle_between(a, b) <= angle) continue;
       chosen_[e] = 1;
       ++degree_[mesh.from(h)];
       ++degree_[mesh.to(h)];

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "isopath/contour/medial_cuts.h"
+#include "isopath/core/angle.h"
 #include "isopath/core/error.h"
 #include "isopath/core/quiet_progress.h"
 #include "isopath/field/exact_field.h"
@@ -36,7 +37,7 @@ std::vector<char> creases(const TriangleMesh& mesh, double angle) {
     const Vec3 b = mesh.face_normal(TriangleMesh::face_of(mesh.twin(h)));
     // A triangle without area has no normal, and hence no crease.
     if (a.isZero(0) || b.isZero(0)) continue;
-    is_crease[e] = std::atan2(a.cross(b).norm(), a.dot(b)) > angle;
+    is_crease[e] = angle_between(a, b) > angle;
   }
   return is_crease;
 }

@@ -1,10 +1,10 @@
 #include "isopath/post/follow_axis.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
+#include "isopath/core/angle.h"
 #include "isopath/tool/thin_path.h"
 
 namespace isopath {
@@ -22,7 +22,7 @@ double deviation(const Vec3& axis_from, const Vec3& axis_to, const RotaryAngles&
   for (int k = 1; k < 8; ++k) {
     const Vec3 wanted = axis_between(axis_from, axis_to, k / 8.0);
     const Vec3 got = axis_of(between(from, to, k / 8.0));
-    worst = std::max(worst, std::atan2(got.cross(wanted).norm(), got.dot(wanted)));
+    worst = std::max(worst, angle_between(got, wanted));
   }
   return worst;
 }

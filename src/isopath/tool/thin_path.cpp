@@ -5,12 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/core/angle.h"
 #include "isopath/core/segment.h"
 
 namespace isopath {
 namespace {
-
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // The great circle from one axis to another.
 class AxisArc {
