@@ -27,6 +27,8 @@ TEST(Team, DoesEveryItemOnceInThousandsOfLoops) {
       times.assign(n, 0);
       team.share(n, at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
         EXPECT_LT(member, team.size());
+        EXPECT_EQ(first % at_a_time, 0);
+        EXPECT_TRUE(past == n || past % at_a_time == 0);
         for (std::size_t i = first; i < past; ++i) ++times[i];
       });
       ASSERT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(n)) << "loop " << loop;

@@ -62,15 +62,14 @@ void Team::run(std::size_t n, std::size_t at_a_time, Call call, const void* work
     const std::uint64_t loop = shares_[k].left / one_loop + 1;
     shares_[k].left = loop * one_loop + first * one_part + past;
   }
-  while (do_part(0)) {
-  }
+  do_parts(0);
   for (int times = 0; done_.load(std::memory_order_acquire) < n;) wait(times);
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
 void Team::help(std::size_t member) {
   for (int times = 0; !over_.load(std::memory_order_relaxed);) {
-    if (do_part(member)) {
+    if (do_parts(member)) {
       times = 0;
     } else {
       wait(times);
@@ -78,38 +77,44 @@ void Team::help(std::size_t member) {
   }
 }
 
-bool Team::do_part(std::size_t member) {
+bool Team::do_parts(std::size_t member) {
+  std::size_t done = 0;
   for (std::size_t k = 0; k < shares_.size(); ++k) {
-    if (do_part_of(shares_[(member / 2 + k) % shares_.size()], member)) return true;
+    Share& share = shares_[(member / 2 + k) % shares_.size()];
+    while (const std::size_t n = do_some_of(share, member)) done += n;
   }
-  return false;
+  // Once, as others do the same to the same line of the cache.
+  if (done > 0) done_.fetch_add(done, std::memory_order_release);
+  return done > 0;
 }
 
-bool Team::do_part_of(Share& share, std::size_t member) {
+std::size_t Team::do_some_of(Share& share, std::size_t member) {
+  // A quarter of what is left, so that what the two take last is short.
+  constexpr std::uint64_t takes = 4;
   const bool from_front = member % 2 == 0;
   std::uint64_t left = share.left.load(std::memory_order_acquire);
   for (;;) {
     const std::uint64_t first_part = left / one_part % one_part;
     const std::uint64_t past_part = left % one_part;
-    if (first_part >= past_part) return false;
+    if (first_part >= past_part) return 0;
     const std::size_t n = n_.load(std::memory_order_acquire);
     const std::size_t at_a_time = at_a_time_.load(std::memory_order_acquire);
     const Call call = call_.load(std::memory_order_acquire);
     const void* const work = work_.load(std::memory_order_acquire);
-    const std::size_t part = from_front ? first_part : past_part - 1;
-    const std::uint64_t then = from_front ? left + one_part : left - 1;
+    const std::uint64_t some = (past_part - first_part + takes - 1) / takes;
+    const std::uint64_t part = from_front ? first_part : past_part - some;
+    const std::uint64_t then = from_front ? left + some * one_part : left - some;
     // It fails if another member took a part, or the loop is not the one any more of which the above was read.
     if (!share.left.compare_exchange_weak(left, then, std::memory_order_acq_rel)) continue;
     const std::size_t first = part * at_a_time;
-    const std::size_t past = std::min(first + at_a_time, n);
+    const std::size_t past = std::min(first + some * at_a_time, n);
     try {
       call(work, first, past, member);
     } catch (...) {
       const std::lock_guard guard(lock_);
       if (!thrown_) thrown_ = std::current_exception();
     }
-    done_.fetch_add(past - first, std::memory_order_release);
-    return true;
+    return past - first;
   }
 }
 

@@ -31,9 +31,10 @@ class Team {
   /// Members, the caller among them: numbered from 0.
   std::size_t size() const { return size_; }
 
-  /// Calls work(first, past, member) for parts of [0, n), at the same time, each of `at_a_time` items (more, if that
-  /// makes over 250,000 parts) unless the whole loop is too short to be worth sharing. Returns after the last of them;
-  /// throws what one of them threw. Two members have one share of the items in common: the even one takes parts from
+  /// Calls work(first, past, member) for parts of [0, n), at the same time, of `at_a_time` items or whole multiples of
+  /// that, unless the whole loop is too short to be worth sharing. While much is left a member takes much at once:
+  /// what members tell each other of their parts costs as much as some items do. Returns after the last of them; throws
+  /// what one of them threw. Two members have one share of the items in common: the even one takes parts from
   /// its front, the odd one from its back, until they meet; then they help others. So where loops follow each other
   /// over things in the same order, a member finds in its cache what it left there. One loop at a time, always from the
   /// same thread, which is member 0.
@@ -56,9 +57,10 @@ class Team {
 
   void run(std::size_t n, std::size_t at_a_time, Call call, const void* work);
   void help(std::size_t member);
-  /// Does one part of the loop; false when none is left.
-  bool do_part(std::size_t member);
-  bool do_part_of(Share& share, std::size_t member);
+  /// Does parts of the loop until none is left; true if there was one.
+  bool do_parts(std::size_t member);
+  /// Takes some parts and does them; returns their number of items, 0 when none is left.
+  std::size_t do_some_of(Share& share, std::size_t member);
 
   std::size_t size_;
   std::vector<Share> shares_;

@@ -21,6 +21,8 @@ constexpr double least_slope = 1e-20;
 /// Shares of a thread in a round.
 constexpr std::size_t lists_at_a_time = 8;
 constexpr std::size_t vertices_at_a_time = 16;
+/// Fewer are taken over sooner than another thread hears of them.
+constexpr std::size_t least_shared_offers = 64;
 /// Items are fetched into the cache this many places before their turn; headers of lists twice as many.
 constexpr std::ptrdiff_t ahead = 4;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
@@ -28,6 +30,11 @@ constexpr double bucket_width = 0.5;
 /// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
 /// the one before: after so many times a half-edge begins to remember what crossed.
 constexpr Index lists_without_memory = 64;
+
+void note(Index item, Index bucket, std::vector<std::vector<Index>>& buckets) {
+  if (bucket >= static_cast<Index>(buckets.size())) buckets.resize(bucket + 1);
+  buckets[bucket].push_back(item);
+}
 
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
   double sum = 0;
@@ -87,10 +94,11 @@ std::size_t ListPropagation::propagated() const {
 void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limits) {
   limits_ = limits;
   margin_ = rounding_ + 2 * limits.accuracy;
+  Workshop& workshop = workshops_.emplace_back(retain_);
   for (const SourceFronts::Vertex& source : fronts.vertices) {
     source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
     source_arcs_.push_back(source.blocked);
-    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex)}});
+    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex)}}, workshop);
   }
   for (const SourceFronts::Front& front : fronts.fronts) {
     const Index h = front.halfedge;
@@ -99,7 +107,7 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
     // The fronts arrive from inside the half-edge's face, to which the way back leads.
     const auto back_at = [&](double x) { return Vec2(-w.direction(x).x(), std::max(-w.direction(x).y(), 0.0)); };
     const auto slack = [&](double x) { return w.kind == Window::Kind::point ? slack_at(w.radius(x)) : 0; };
-    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, slack(0), 0, back_at(0)}});
+    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, slack(0), 0, back_at(0)}}, workshop);
     if (w.end == length) {
       const Vec2 outgoing = geometry_.apex(h) - Vec2(length, 0);
       const Vec2 back = back_at(length);
@@ -107,7 +115,8 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
           {mesh_.to(h),
            w.root,
            w.distance(length),
-           {TriangleMesh::next(h), slack(length), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}});
+           {TriangleMesh::next(h), slack(length), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}},
+          workshop);
     }
     if (w.filler && retain_) {
       const Index edge = mesh_.edge_of(h);
@@ -116,10 +125,10 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
   }
   const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
   std::stable_sort(edge_sources_.begin(), edge_sources_.end(), by_edge);
-  put_down_fronts(fronts.fronts);
+  put_down_fronts(fronts.fronts, workshop);
 }
 
-void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fronts) {
+void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fronts, Workshop& workshop) {
   struct Arriving {
     Index place;
     Index front;
@@ -135,7 +144,6 @@ void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fr
   tbb::parallel_sort(arriving.begin(), arriving.end(), [](const Arriving& a, const Arriving& b) {
     return std::tie(a.place, a.begin, a.front) < std::tie(b.place, b.begin, b.front);
   });
-  Workshop& workshop = workshops_.emplace_back(retain_);
   WindowBlocks& blocks = workshop.blocks;
   for (std::size_t first = 0, past = 0; first < arriving.size(); first = past) {
     const Index place = arriving[first].place;
@@ -161,11 +169,10 @@ void ListPropagation::push_halfedge(Index halfedge, double least, Workshop& work
   do {
     if (bucket >= before) return;
   } while (!known.compare_exchange_weak(before, bucket, std::memory_order_relaxed));
-  if (bucket >= static_cast<Index>(workshop.halfedges.size())) workshop.halfedges.resize(bucket + 1);
-  workshop.halfedges[bucket].push_back(halfedge);
+  note(halfedge, bucket, workshop.halfedges);
 }
 
-void ListPropagation::offer_vertex(const Offer& offer) {
+void ListPropagation::offer_vertex(const Offer& offer, Workshop& workshop) {
   const double distance = std::max(offer.distance, 0.0);
   VertexState& state = states_[offer.vertex];
   if (!(distance < distances_[offer.vertex])) {
@@ -173,14 +180,28 @@ void ListPropagation::offer_vertex(const Offer& offer) {
     if (distance > distances_[offer.vertex] || state.bucket == not_waiting) return;
     if (offer.arrival.halfedge >= state.arrival.halfedge) return;
   }
-  distances_[offer.vertex] = distance;
+  std::atomic_ref<double>(distances_[offer.vertex]).store(distance, std::memory_order_relaxed);
   state.root = offer.root;
   state.arrival = offer.arrival;
   const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
   if (bucket >= state.bucket) return;
   state.bucket = bucket;
-  if (bucket >= static_cast<Index>(vertices_.size())) vertices_.resize(bucket + 1);
-  vertices_[bucket].push_back(offer.vertex);
+  note(offer.vertex, bucket, workshop.vertices);
+}
+
+void ListPropagation::offer_vertex_locked(const Offer& offer, Workshop& workshop) {
+  // What is longer now will be so then.
+  const std::atomic_ref<double> known(distances_[offer.vertex]);
+  if (offer.distance > known.load(std::memory_order_relaxed)) return;
+  const std::atomic_ref<bool> locked(states_[offer.vertex].locked);
+  while (locked.exchange(true, std::memory_order_acquire)) {
+  }
+  struct Unlock {
+    std::atomic_ref<bool> locked;
+    ~Unlock() { locked.store(false, std::memory_order_release); }
+  };
+  const Unlock unlock{locked};
+  offer_vertex(offer, workshop);
 }
 
 void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block) {
@@ -189,7 +210,7 @@ void ListPropagation::put_down(Index halfedge, Feeder feeder, WindowBlock* block
   first = block;
 }
 
-void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
+void ListPropagation::relax_edges(Index vertex, Workshop& workshop) const {
   const VertexState& from = states_[vertex];
   const std::span<const Spoke> ring = rings_.of(vertex);
   const double distance = distances_[vertex];
@@ -206,7 +227,7 @@ void ListPropagation::relax_edges(Index vertex, Handed& handed) const {
     } else {
       arrival.halfedge = TriangleMesh::prev(ring[k > 0 ? k - 1 : ring.size() - 1].halfedge);
     }
-    handed.offers.push_back({spoke.to, from.root, there, arrival});
+    workshop.offers.push_back({spoke.to, from.root, there, arrival});
   }
 }
 
@@ -217,7 +238,7 @@ bool ListPropagation::may_bend(Index vertex) const {
   return state.total_angle > sides * (std::numbers::pi - state.arrival.slack);
 }
 
-void ListPropagation::find_fans(Index vertex, Handed& handed) {
+void ListPropagation::find_fans(Index vertex, Workshop& workshop) {
   const double total = states_[vertex].total_angle;
   const bool is_source = source_at_[vertex] != no_index;
   if (!is_source && !may_bend(vertex)) return;
@@ -243,7 +264,7 @@ void ListPropagation::find_fans(Index vertex, Handed& handed) {
   }
   for_each_free_arc(ring, first, total, blocked, [&](Index outgoing, double low, double high, bool cut) {
     if (retain_) fans_[outgoing] = {std::min(fans_[outgoing].low, low), std::max(fans_[outgoing].high, high)};
-    handed.fans.push_back({vertex, outgoing, low, cut ? high : infinity});
+    workshop.fans.push_back({vertex, outgoing, low, cut ? high : infinity});
     __builtin_prefetch(&sites_[outgoing]);
     __builtin_prefetch(&sites_[TriangleMesh::next(outgoing)]);
   });
@@ -274,31 +295,46 @@ void ListPropagation::send_fan(const Fan& fan, Workshop& workshop) {
 }
 
 void ListPropagation::run_vertices(Team& team) {
-  active_.clear();
-  for (const Index v : std::exchange(vertices_[bucket_], {})) {
-    if (states_[v].bucket != bucket_) continue;
+  gather_noted(&Workshop::vertices, active_);
+  // A vertex may have been called from a nearer bucket since it was noted.
+  std::erase_if(active_, [&](Index v) {
+    if (states_[v].bucket != bucket_) return true;
     states_[v].bucket = not_waiting;
-    active_.push_back(v);
-  }
-  const std::size_t n_parts = (active_.size() + vertices_at_a_time - 1) / vertices_at_a_time;
-  if (handed_.size() < n_parts) handed_.resize(n_parts);
-  team.share(n_parts, 1, [&](std::size_t first, std::size_t past, std::size_t member) {
+    return false;
+  });
+  team.share(active_.size(), vertices_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
     Workshop& workshop = workshops_[member];
-    for (std::size_t part = first; part < past; ++part) {
-      Handed& handed = handed_[part];
-      handed.offers.clear();
-      handed.fans.clear();
-      const std::size_t end = std::min(active_.size(), (part + 1) * vertices_at_a_time);
-      for (std::size_t i = part * vertices_at_a_time; i < end; ++i) {
+    for (std::size_t begin = first, end = first; begin < past; begin = end) {
+      end = std::min(begin + vertices_at_a_time, past);
+      workshop.fans.clear();
+      for (std::size_t i = begin; i < end; ++i) {
         if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
-        relax_edges(active_[i], handed);
-        find_fans(active_[i], handed);
+        relax_edges(active_[i], workshop);
+        find_fans(active_[i], workshop);
       }
-      for (const Fan& fan : handed.fans) send_fan(fan, workshop);
+      for (const Fan& fan : workshop.fans) send_fan(fan, workshop);
     }
   });
-  for (std::size_t part = 0; part < n_parts; ++part) {
-    for (const Offer& offer : handed_[part].offers) offer_vertex(offer);
+  take_over_offers(team);
+}
+
+void ListPropagation::take_over_offers(Team& team) {
+  std::size_t n = 0;
+  for (const Workshop& workshop : workshops_) n += workshop.offers.size();
+  const bool shared = team.size() > 1 && n >= least_shared_offers;
+  const auto take_over = [&](std::size_t first, std::size_t past, std::size_t) {
+    for (std::size_t k = first; k < past; ++k) {
+      Workshop& workshop = workshops_[k];
+      for (const Offer& offer : workshop.offers) {
+        shared ? offer_vertex_locked(offer, workshop) : offer_vertex(offer, workshop);
+      }
+      workshop.offers.clear();
+    }
+  };
+  if (shared) {
+    team.share(workshops_.size(), 1, take_over);
+  } else {
+    take_over(0, workshops_.size(), 0);
   }
 }
 
@@ -333,19 +369,8 @@ bool ListPropagation::take(Index halfedge, Crossing& crossing, Workshop& worksho
 }
 
 void ListPropagation::run_lists(Team& team) {
-  waiting_.clear();
-  // Odd members of the team take parts from back to front: in this order what they noted lies where they begin.
-  for (std::size_t k = 0; k < workshops_.size(); ++k) {
-    if (bucket_ >= static_cast<Index>(workshops_[k].halfedges.size())) continue;
-    std::vector<Index>& noted = workshops_[k].halfedges[bucket_];
-    if (k % 2 == 0) {
-      waiting_.insert(waiting_.end(), noted.begin(), noted.end());
-    } else {
-      waiting_.insert(waiting_.end(), noted.rbegin(), noted.rend());
-    }
-    noted.clear();
-  }
-  crossings_.resize(waiting_.size());
+  gather_noted(&Workshop::halfedges, waiting_);
+  if (crossings_.size() < waiting_.size()) crossings_.resize(waiting_.size());
   // All are taken before one crosses: what crosses may be put down where another one waits.
   team.share(waiting_.size(), 4 * lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
     Workshop& workshop = workshops_[member];
@@ -361,8 +386,8 @@ void ListPropagation::run_lists(Team& team) {
     }
     workshop.crowded.clear();
   }
-  const auto n = static_cast<std::ptrdiff_t>(crossings_.size());
-  team.share(crossings_.size(), lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
+  const auto n = static_cast<std::ptrdiff_t>(waiting_.size());
+  team.share(waiting_.size(), lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
     Workshop& workshop = workshops_[member];
     const std::ptrdiff_t step = member % 2 == 0 ? 1 : -1;
     std::ptrdiff_t i = member % 2 == 0 ? first : past - 1;
@@ -377,15 +402,29 @@ void ListPropagation::run_lists(Team& team) {
       if (crossings_[i].halfedge != no_index) cross(crossings_[i], workshop);
     }
   });
-  for (Workshop& workshop : workshops_) {
-    for (const Offer& offer : workshop.offers) offer_vertex(offer);
-    workshop.offers.clear();
+  take_over_offers(team);
+}
+
+void ListPropagation::gather_noted(Noted noted, std::vector<Index>& all) {
+  all.clear();
+  // Odd members of the team take parts from back to front: in this order what they noted lies where they begin.
+  for (std::size_t k = 0; k < workshops_.size(); ++k) {
+    std::vector<std::vector<Index>>& buckets = workshops_[k].*noted;
+    if (bucket_ >= static_cast<Index>(buckets.size())) continue;
+    std::vector<Index>& own = buckets[bucket_];
+    if (k % 2 == 0) {
+      all.insert(all.end(), own.begin(), own.end());
+    } else {
+      all.insert(all.end(), own.rbegin(), own.rend());
+    }
+    own.clear();
   }
 }
 
-bool ListPropagation::are_waiting() const {
+bool ListPropagation::are_waiting(Noted noted) const {
   return std::any_of(workshops_.begin(), workshops_.end(), [&](const Workshop& workshop) {
-    return bucket_ < static_cast<Index>(workshop.halfedges.size()) && !workshop.halfedges[bucket_].empty();
+    const std::vector<std::vector<Index>>& buckets = workshop.*noted;
+    return bucket_ < static_cast<Index>(buckets.size()) && !buckets[bucket_].empty();
   });
 }
 
@@ -393,14 +432,14 @@ void ListPropagation::run(double stop_distance, Progress& progress) {
   Team team;
   while (workshops_.size() < team.size()) workshops_.emplace_back(retain_);
   for (bucket_ = 0; bucket_ * bucket_width_ <= stop_distance; ++bucket_) {
-    std::size_t past = vertices_.size();
-    for (const Workshop& workshop : workshops_) past = std::max(past, workshop.halfedges.size());
+    std::size_t past = 0;
+    for (const Workshop& workshop : workshops_)
+      past = std::max({past, workshop.vertices.size(), workshop.halfedges.size()});
     if (bucket_ >= static_cast<Index>(past)) break;
-    vertices_.resize(past);
-    while (!vertices_[bucket_].empty() || are_waiting()) {
+    while (are_waiting(&Workshop::vertices) || are_waiting(&Workshop::halfedges)) {
       progress.checkpoint();
-      if (!vertices_[bucket_].empty()) run_vertices(team);
-      if (are_waiting()) run_lists(team);
+      if (are_waiting(&Workshop::vertices)) run_vertices(team);
+      if (are_waiting(&Workshop::halfedges)) run_lists(team);
     }
   }
   progress.at(1);

@@ -90,6 +90,7 @@ class ListPropagation {
     Index root = no_index;
     Index bucket = not_waiting;
     bool may_bend = false;
+    bool locked = false;  ///< while one thread of several takes over a way
   };
   struct Offer {
     Index vertex;
@@ -104,11 +105,6 @@ class ListPropagation {
     Index outgoing;
     double low;
     double high;
-  };
-  /// What some vertices hand on: to their neighbours, and into their faces.
-  struct Handed {
-    std::vector<Offer> offers;
-    std::vector<Fan> fans;
   };
   /// A list that crossed, with its windows behind it in memory.
   struct KeptList {
@@ -133,7 +129,9 @@ class ListPropagation {
     WindowBlocks blocks;
     bool tagged;
     std::vector<std::vector<Index>> halfedges;  ///< where lists wait, by bucket
-    std::vector<Offer> offers;                  ///< to the corners of triangles that were crossed
+    std::vector<std::vector<Index>> vertices;   ///< that wait, by bucket
+    std::vector<Offer> offers;                  ///< to neighbours, and to the corners of triangles that were crossed
+    std::vector<Fan> fans;                      ///< of some vertices
     std::vector<Index> crowded;                 ///< half-edges that shall begin to remember
     std::size_t propagated = 0;
     EdgeEnvelope envelope;
@@ -146,9 +144,14 @@ class ListPropagation {
   enum Feeder { from_next = 0, from_previous = 1, from_corner = 2 };
 
   /// Lists of the fronts that leave the sources' faces.
-  void put_down_fronts(const std::vector<SourceFronts::Front>& fronts);
+  void put_down_fronts(const std::vector<SourceFronts::Front>& fronts, Workshop& workshop);
   void push_halfedge(Index halfedge, double least, Workshop& workshop);
-  void offer_vertex(const Offer& offer);
+  /// Takes a way over if it is shorter; a vertex that thereby begins to wait is noted in the workshop.
+  void offer_vertex(const Offer& offer, Workshop& workshop);
+  /// The same, for several threads at a time.
+  void offer_vertex_locked(const Offer& offer, Workshop& workshop);
+  /// Takes over what all members found for vertices, each its own: so a member's cache holds the vertices it found.
+  void take_over_offers(Team& team);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
   /// when windows are retained.
   Index waiting_place(Index leaving) const {
@@ -162,8 +165,8 @@ class ListPropagation {
   /// True where shortest ways may bend at a vertex; or where nobody can tell, since rounding turns the rays that come
   /// from so near: it then sends a fan into the slit between those that pass left and right of it.
   bool may_bend(Index vertex) const;
-  void relax_edges(Index vertex, Handed& handed) const;
-  void find_fans(Index vertex, Handed& handed);
+  void relax_edges(Index vertex, Workshop& workshop) const;
+  void find_fans(Index vertex, Workshop& workshop);
   void send_fan(const Fan& fan, Workshop& workshop);
   void put_down(Index halfedge, Feeder feeder, WindowBlock* block);
 
@@ -186,8 +189,10 @@ class ListPropagation {
 
   /// The lists that wait at a half-edge for this bucket; false when they were taken before.
   bool take(Index halfedge, Crossing& crossing, Workshop& workshop);
-  /// True when lists wait for this bucket.
-  bool are_waiting() const;
+  using Noted = std::vector<std::vector<Index>> Workshop::*;
+  /// What all members noted for this bucket, put into `all` so that each finds its own where it begins.
+  void gather_noted(Noted noted, std::vector<Index>& all);
+  bool are_waiting(Noted noted) const;
   void run_vertices(Team& team);
   void run_lists(Team& team);
 
@@ -208,12 +213,10 @@ class ListPropagation {
   std::vector<FanArc> fans_;                            ///< per half-edge, when windows are retained
   std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
-  std::vector<std::vector<Index>> vertices_;            ///< by bucket
   std::vector<EdgeEnvelope> memories_;                  ///< of half-edges that are crossed again and again
   std::vector<Index> active_;                           ///< vertices
   std::vector<Index> waiting_;                          ///< half-edges
   std::vector<Crossing> crossings_;
-  std::vector<Handed> handed_;
   std::deque<Workshop> workshops_;  ///< by member of the team
   Index bucket_ = 0;
   double bucket_width_ = 1;
