@@ -120,9 +120,9 @@ std::string smoothing_text(const PlanResult& result) {
   if (!smoothing.repair) return text + "\n";
   text += fmt::format(", closed by {}:\n", name_of(*smoothing.repair));
   for (const GapRepairCost& way : smoothing.costs) {
-    text += fmt::format("    {:<14} {}{:.5g} mm, lifts {}, tight turns {}, {:.4g} mm between passes\n",
-                        name_of(way.repair), way.planned ? "" : "about ", way.length, way.lifts, way.tight_turns,
-                        way.spacing);
+    text +=
+        fmt::format("    {:<14} {}{:.5g} mm, lifts {}, tight turns {}, {:.4g} mm between passes\n", name_of(way.repair),
+                    way.planned ? "" : "about ", way.length, way.lifts, way.tight_turns, way.spacing);
   }
   return text;
 }

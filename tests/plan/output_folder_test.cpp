@@ -63,6 +63,15 @@ TEST_F(OutputFolder, ThrowsAndChangesNothingWhenAFileCannotBeWritten) {
   EXPECT_EQ(read_whole_file(root_ / "a.csv"), "old");
 }
 
+TEST_F(OutputFolder, KeepsAFolderThatIsInTheWayOfAFile) {
+  write_file_atomically(root_ / "a.csv", "old");
+  write_file_atomically(root_ / "b.json/notes.txt", "mine");
+  EXPECT_THROW(write_output_folder(root_, files_), Error);
+  EXPECT_EQ(names_in(root_), (Names{"a.csv", "b.json"}));
+  EXPECT_EQ(read_whole_file(root_ / "a.csv"), "old");
+  EXPECT_EQ(read_whole_file(root_ / "b.json/notes.txt"), "mine");
+}
+
 TEST_F(OutputFolder, NamesTheFolderWhenItIsAFile) {
   write_file_atomically(root_ / "file", "");
   try {
@@ -135,6 +144,14 @@ TEST_F(OutputFolder, AFileIsCheckedBeforehandWithoutChangingAnything) {
   EXPECT_EQ(names_in(root_), (Names{"a.csv", "folder"}));
   EXPECT_TRUE(fs::is_empty(root_ / "folder"));
   EXPECT_EQ(read_whole_file(root_ / "a.csv"), "old");
+}
+
+TEST_F(OutputFolder, DevicesAreWrittenToAndStay) {
+  fs::create_symlink("/dev/null", root_ / "sink");
+  EXPECT_FALSE(obstacle_to_writing(root_ / "sink"));
+  write_file_atomically(root_ / "sink", "gone");
+  EXPECT_TRUE(fs::is_symlink(root_ / "sink"));
+  EXPECT_EQ(names_in(root_), (Names{"sink"}));
 }
 
 }  // namespace

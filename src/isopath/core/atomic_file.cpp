@@ -29,6 +29,8 @@ bool write_all(int descriptor, std::string_view content) {
   return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
 
+std::error_code last_error() { return {errno, std::generic_category()}; }
+
 /// Makes a folder and those above it that are missing; they disappear again.
 class TrialFolders {
  public:
@@ -60,9 +62,24 @@ mode_t default_mode() {
   return 0666 & ~mask;
 }
 
+/// Devices and pipes such as /dev/stdout: renaming a file over them would put an end to them.
+bool is_special(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_other(path, unknown);
+}
+
+void write_special(const std::filesystem::path& path, std::string_view content) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, "cannot open", errno);
+  const int error = write_all(descriptor, content) ? 0 : errno;
+  ::close(descriptor);
+  if (error != 0) fail(path, "cannot write", error);
+}
+
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {
+  if (is_special(path)) return write_special(path, content);
   if (path.has_parent_path()) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
@@ -85,6 +102,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 }
 
 std::error_code obstacle_to_writing(const std::filesystem::path& path) {
+  if (is_special(path)) return ::access(path.c_str(), W_OK) == 0 ? std::error_code() : last_error();
   std::error_code error;
   const TrialFolders folders(path.parent_path(), error);
   if (error) return error;
@@ -92,7 +110,7 @@ std::error_code obstacle_to_writing(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, unknown)) return std::make_error_code(std::errc::is_a_directory);
   std::string temporary = path.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(temporary.data());
-  if (descriptor < 0) return {errno, std::generic_category()};
+  if (descriptor < 0) return last_error();
   ::close(descriptor);
   ::unlink(temporary.c_str());
   return {};

@@ -8,7 +8,8 @@
 namespace isopath {
 
 /// Writes a file whole or not at all: into a temporary file beside it, flushed, then renamed over it.
-/// Missing parent folders are made. Throws Error(bad_input) naming the path when it cannot be written.
+/// Devices and pipes are written to as they are. Missing parent folders are made. Throws Error(bad_input) naming the
+/// path when it cannot be written.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 /// Why `write_file_atomically` could not write this file now; no error where it could. Tries it: makes the missing

@@ -27,8 +27,8 @@ struct GapRepairCost {
   GapRepair repair = GapRepair::bumps;
   double length = 0;  ///< on the surface, covering and links, mm
   Index lifts = 0;
-  Index tight_turns = 0;    ///< see PathFigures
-  double spacing = 0;       ///< that levels were chosen for, mm
+  Index tight_turns = 0;  ///< see PathFigures
+  double spacing = 0;     ///< that levels were chosen for, mm
   /// False for a way whose gaps were not closed, as it could not be the cheapest: figures are those before.
   bool planned = true;
 };

@@ -80,6 +80,10 @@ class Moves {
 
 void move_into_place(const fs::path& fresh, const fs::path& replaced, const fs::path& folder,
                      std::span<const OutputFile> files) {
+  for (const OutputFile& file : files) {
+    if (fs::is_directory(fs::symlink_status(folder / file.name)))
+      fail(folder / file.name, "cannot write", "a folder is in its place");
+  }
   fs::create_directory(replaced);
   Moves moves;
   for (const OutputFile& file : files) {

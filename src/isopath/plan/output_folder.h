@@ -15,7 +15,8 @@ struct OutputFile {
 };
 
 /// Writes all the files into a folder, or none: they are written to a temporary folder on the same disk first and then
-/// moved into place. Missing folders are made; files of the folder that are not among `files` stay. When a file cannot
+/// moved into place. Missing folders are made; what else the folder holds stays, and a folder with the name of
+/// one of the files is an error. When a file cannot
 /// be moved into place, those already moved are taken back. Throws Error(bad_input) naming the path, and
 /// Error(cancelled) on request as long as nothing was moved.
 void write_output_folder(const std::filesystem::path& folder, std::span<const OutputFile> files,

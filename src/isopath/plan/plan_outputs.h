@@ -12,10 +12,10 @@ namespace isopath {
 
 /// The figures of a run as one JSON object: `area`, `spacing`, `pattern`, `cover_length`, `length_ratio`, `pieces`,
 /// `lifts`, `links_length`, `gap` (`max`, `p99`, `mean`, `cv`, all over the spacing), `covered_fraction`, `min_radius`
-/// (null where the path is straight), `sharp_corners`, `tight_turns`, `path_time_s`, `time_s` per stage, `peak_memory_mb`,
-/// `warnings`; with a partition `patches` in the order of work (`pattern`, `area`, `cover_length`, `pieces`, `gap` of
-/// each by itself); where the planner chose between spirals `spiral` (`blended`, `why`, and what `by_distance`,
-/// `by_blend` and `by_two_way` cost, of those that were tried); with smoothing `smoothing` (`width`,
+/// (null where the path is straight), `sharp_corners`, `tight_turns`, `path_time_s`, `time_s` per stage,
+/// `peak_memory_mb`, `warnings`; with a partition `patches` in the order of work (`pattern`, `area`, `cover_length`,
+/// `pieces`, `gap` of each by itself); where the planner chose between spirals `spiral` (`blended`, `why`, and what
+/// `by_distance`, `by_blend` and `by_two_way` cost, of those that were tried); with smoothing `smoothing` (`width`,
 /// `gap_before_repair` over the spacing, `repair`, and what all `ways` to close gaps cost); where the job asks for a
 /// smallest radius `tight_places`, those with less (`at`, `radius`). Only `time_s` and `peak_memory_mb` differ from run
 /// to run.

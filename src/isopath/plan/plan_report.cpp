@@ -25,22 +25,23 @@ ReportTable figures_table(const PlanResult& result) {
   const PathFigures& f = result.figures;
   const GapReport& gap = result.gap;
   const double w = result.spacing;
-  return {"Path",
-          {{"area", text(gap.area), "mm²"},
-           {"spacing", text(w), "mm", "Wanted distance between neighbouring passes."},
-           {"pattern", std::string(name_of(std::optional(result.pattern)))},
-           {"covering length", text(f.cover_length), "mm"},
-           {"length ratio", text(result.length_ratio), "",
-            "Covering length × spacing / area: 1 is the least that evenly spaced passes need."},
-           {"links", text(f.links_length), "mm", "Moves on the surface between passes."},
-           {"pieces", fmt::format("{}", f.pieces), "", "Stretches covered without leaving the surface."},
-           {"lifts", fmt::format("{}", f.lifts)},
-           {"smallest radius", f.min_radius < infinity ? text(f.min_radius) : "straight",
-            f.min_radius < infinity ? "mm" : "", "Along covering moves."},
-           {"sharp corners", fmt::format("{}", f.sharp_corners), "", "Turns by more than 45 degrees."},
-           {"tight turns", fmt::format("{}", f.tight_turns), "", "Turns by more than 45 degrees within half a spacing."},
-           {"time on the path", text(result.tool.points.empty() ? 0 : result.tool.points.back().time), "s",
-            "Length over feed; accelerations are left out."}}};
+  return {
+      "Path",
+      {{"area", text(gap.area), "mm²"},
+       {"spacing", text(w), "mm", "Wanted distance between neighbouring passes."},
+       {"pattern", std::string(name_of(std::optional(result.pattern)))},
+       {"covering length", text(f.cover_length), "mm"},
+       {"length ratio", text(result.length_ratio), "",
+        "Covering length × spacing / area: 1 is the least that evenly spaced passes need."},
+       {"links", text(f.links_length), "mm", "Moves on the surface between passes."},
+       {"pieces", fmt::format("{}", f.pieces), "", "Stretches covered without leaving the surface."},
+       {"lifts", fmt::format("{}", f.lifts)},
+       {"smallest radius", f.min_radius < infinity ? text(f.min_radius) : "straight",
+        f.min_radius < infinity ? "mm" : "", "Along covering moves."},
+       {"sharp corners", fmt::format("{}", f.sharp_corners), "", "Turns by more than 45 degrees."},
+       {"tight turns", fmt::format("{}", f.tight_turns), "", "Turns by more than 45 degrees within half a spacing."},
+       {"time on the path", text(result.tool.points.empty() ? 0 : result.tool.points.back().time), "s",
+        "Length over feed; accelerations are left out."}}};
 }
 
 /// For a ball only.
