@@ -18,9 +18,10 @@ struct FinishOptions {
   bool taut = false;          ///< draw the curve tight in the end (taut_curve.h), unless the radius comes first
 };
 
-/// Closes a plan's gaps and rounds its corners with `limits.radius`: bumps first, which may have corners, and what
-/// rounding opens by swells and full turns; unless the radius comes first, what these do not reach by
-/// bumps and loops again. Corners stay where the radius is 0. Sets the plan's radius and its tight places.
+/// Closes a plan's gaps and rounds its corners with `limits.radius`: bumps first, after gentle swells where these are
+/// asked for; they may have corners. What rounding opens is closed by swells and full turns; unless the radius comes
+/// first, what these do not reach by bumps and loops again. Corners stay where the radius is 0. Sets the plan's radius
+/// and its tight places.
 void finish_curve(const SurfaceLinker& linker, const SmoothNormals& normals, ImpactPlan& plan, GapLimits limits,
                   const FinishOptions& options, Progress& progress = Progress::none());
 

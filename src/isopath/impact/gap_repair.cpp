@@ -101,14 +101,8 @@ MeasuredCurve fine_at_ends(const TriangleMesh& mesh, const std::vector<SurfacePo
   const MeasuredCurve coarse = measured(open);
   std::vector<SurfacePoint> points{open.front()};
   for (std::size_t i = 1; i < open.size(); ++i) {
-    const Index face = common_face(mesh, open[i - 1], open[i]);
-    if (face != no_index && std::min(coarse.to_end[i - 1], coarse.to_end[i]) < distance) {
-      const Vec3 from = express_in(mesh, open[i - 1], face).barycentric;
-      const Vec3 to = express_in(mesh, open[i], face).barycentric;
-      const double length = (position_of(mesh, open[i]) - position_of(mesh, open[i - 1])).norm();
-      const int parts = static_cast<int>(std::clamp(std::ceil(points_of_end * length / distance), 1.0, 1000.0));
-      for (int k = 1; k < parts; ++k) points.push_back({face, from + (to - from) * (static_cast<double>(k) / parts)});
-    }
+    if (std::min(coarse.to_end[i - 1], coarse.to_end[i]) < distance)
+      append_between(mesh, open[i - 1], open[i], distance / points_of_end, points);
     points.push_back(open[i]);
   }
   return measured(std::move(points));

@@ -1,12 +1,10 @@
 #include "isopath/impact/ridge_passes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "isopath/contour/isolines.h"
 #include "isopath/impact/cover_field.h"
-#include "isopath/mesh/surface_walk.h"
 
 namespace isopath {
 namespace {
@@ -26,14 +24,7 @@ std::vector<SurfacePoint> fine_points(const SurfaceLinker& linker, std::span<con
   for (const SurfacePoint& point : ridge) linker.extend(curve, point);
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < curve.size(); ++i) {
-    const Index face = i > 0 ? common_face(mesh, curve.points[i - 1], curve.points[i]) : no_index;
-    if (face != no_index) {
-      const Vec3 from = express_in(mesh, curve.points[i - 1], face).barycentric;
-      const Vec3 to = express_in(mesh, curve.points[i], face).barycentric;
-      const double length = (curve.positions[i] - curve.positions[i - 1]).norm();
-      const int parts = static_cast<int>(std::min(1000.0, std::ceil(10 * length / spacing)));
-      for (int k = 1; k < parts; ++k) points.push_back({face, from + (to - from) * (static_cast<double>(k) / parts)});
-    }
+    if (i > 0) append_between(mesh, curve.points[i - 1], curve.points[i], 0.1 * spacing, points);
     points.push_back(curve.points[i]);
   }
   return points;

@@ -1,6 +1,7 @@
 #include "isopath/impact/surface_curve.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "isopath/core/quiet_progress.h"
@@ -17,6 +18,17 @@ void SurfaceCurve::add(const TriangleMesh& mesh, const SurfacePoint& point) {
 void SurfaceCurve::reverse() {
   std::reverse(points.begin(), points.end());
   std::reverse(positions.begin(), positions.end());
+}
+
+void append_between(const TriangleMesh& mesh, const SurfacePoint& from, const SurfacePoint& to, double step,
+                    std::vector<SurfacePoint>& points) {
+  const Index face = common_face(mesh, from, to);
+  if (face == no_index) return;
+  const Vec3 start = express_in(mesh, from, face).barycentric;
+  const Vec3 way = express_in(mesh, to, face).barycentric - start;
+  const double length = (position_of(mesh, to) - position_of(mesh, from)).norm();
+  const int parts = static_cast<int>(std::clamp(std::ceil(length / step), 1.0, 1000.0));
+  for (int k = 1; k < parts; ++k) points.push_back({face, start + way * (static_cast<double>(k) / parts)});
 }
 
 SurfaceCurve make_curve(const TriangleMesh& mesh, std::vector<SurfacePoint> points) {

@@ -21,6 +21,11 @@ struct SurfaceCurve {
   void reverse();
 };
 
+/// Appends points evenly between two that share a face, without these, so many that no step is longer than `step` (at
+/// most 1000 steps); none where they share no face.
+void append_between(const TriangleMesh& mesh, const SurfacePoint& from, const SurfacePoint& to, double step,
+                    std::vector<SurfacePoint>& points);
+
 SurfaceCurve make_curve(const TriangleMesh& mesh, std::vector<SurfacePoint> points);
 double length_of(const SurfaceCurve& curve);
 /// Index of the curve's point nearest to a place; 0 for an empty curve.

@@ -105,7 +105,7 @@ ReportTable smoothing_table(const PlanResult& result) {
                           fmt::format("{}{}", way.planned ? "" : "about ", text(way.length)), "mm",
                           way.planned ? fmt::format("{} lifts, {} tight turns, {} mm between passes.", way.lifts,
                                                     way.tight_turns, text(way.spacing))
-                                      : "Estimated only, as it is too long anyway."});
+                                      : "Estimated only, as it costs too much anyway."});
   }
   return table;
 }
