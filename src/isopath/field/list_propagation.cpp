@@ -296,12 +296,6 @@ void ListPropagation::send_fan(const Fan& fan, Workshop& workshop) {
 
 void ListPropagation::run_vertices(Team& team) {
   gather_noted(&Workshop::vertices, active_);
-  // A vertex may have been called from a nearer bucket since it was noted.
-  std::erase_if(active_, [&](Index v) {
-    if (states_[v].bucket != bucket_) return true;
-    states_[v].bucket = not_waiting;
-    return false;
-  });
   team.share(active_.size(), vertices_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
     Workshop& workshop = workshops_[member];
     for (std::size_t begin = first, end = first; begin < past; begin = end) {
@@ -309,6 +303,10 @@ void ListPropagation::run_vertices(Team& team) {
       workshop.fans.clear();
       for (std::size_t i = begin; i < end; ++i) {
         if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
+        // A vertex may have been called from a nearer bucket since it was noted, and may be noted twice in this one.
+        Index noted = bucket_;
+        const std::atomic_ref<Index> bucket(states_[active_[i]].bucket);
+        if (!bucket.compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed)) continue;
         relax_edges(active_[i], workshop);
         find_fans(active_[i], workshop);
       }
