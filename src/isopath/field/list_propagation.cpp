@@ -303,10 +303,7 @@ void ListPropagation::run_vertices(Team& team) {
       workshop.fans.clear();
       for (std::size_t i = begin; i < end; ++i) {
         if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
-        // A vertex may have been called from a nearer bucket since it was noted, and may be noted twice in this one.
-        Index noted = bucket_;
-        const std::atomic_ref<Index> bucket(states_[active_[i]].bucket);
-        if (!bucket.compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed)) continue;
+        if (!stops_waiting(states_[active_[i]].bucket)) continue;
         relax_edges(active_[i], workshop);
         find_fans(active_[i], workshop);
       }
@@ -352,13 +349,14 @@ void ListPropagation::fetch(const Crossing& crossing, const WindowBlocks& blocks
   }
 }
 
+bool ListPropagation::stops_waiting(Index& bucket) const {
+  Index noted = bucket_;
+  return std::atomic_ref<Index>(bucket).compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed);
+}
+
 bool ListPropagation::take(Index halfedge, Crossing& crossing, Workshop& workshop) {
   Site& site = sites_[halfedge];
-  // A half-edge may be noted twice in a bucket: once long ago, before it was called from a nearer one.
-  Index noted = bucket_;
-  if (!std::atomic_ref<Index>(site.bucket).compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed)) {
-    return false;
-  }
+  if (!stops_waiting(site.bucket)) return false;
   crossing.halfedge = halfedge;
   crossing.depth = std::numeric_limits<Index>::max();
   for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(site.waiting[k], nullptr);

@@ -187,6 +187,9 @@ class ListPropagation {
   /// What a list still adds to all that crossed the same half-edge before.
   WindowArrays news(const WindowArrays& windows, std::size_t& n, Index halfedge, Workshop& workshop);
 
+  /// Ends the waiting of a half-edge or vertex that was noted for this bucket; false where it waits here no more. It
+  /// may have been called from a nearer bucket since it was noted, and be noted twice in this one.
+  bool stops_waiting(Index& bucket) const;
   /// The lists that wait at a half-edge for this bucket; false when they were taken before.
   bool take(Index halfedge, Crossing& crossing, Workshop& workshop);
   using Noted = std::vector<std::vector<Index>> Workshop::*;
