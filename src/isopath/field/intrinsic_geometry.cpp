@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <limits>
 
 #include "isopath/core/error.h"
+#include "isopath/field/angles.h"
 #include "isopath/field/triangle_layout.h"
 
 namespace isopath {
@@ -48,15 +50,18 @@ void check_lengths(const TriangleMesh& mesh, std::span<const double> lengths) {
 
 IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh)
     : size_(mesh.size()), length_(mesh.n_halfedges()), apex_(mesh.n_halfedges()), angle_(mesh.n_halfedges()) {
-  tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
-    const Vec3& a = mesh.position(mesh.from(h));
-    const Vec3 along = mesh.position(mesh.to(h)) - a;
-    const Vec3 towards = mesh.position(mesh.from(TriangleMesh::prev(h))) - a;
-    // Half-edges of one edge must agree to the last bit, so that both sides see the same interval.
-    length_[h] = mesh.edge_length(mesh.edge_of(h));
-    apex_[h] = length_[h] > 0 ? Vec2(along.dot(towards) / length_[h], along.cross(towards).norm() / length_[h])
-                              : Vec2(0, towards.norm());
-    angle_[h] = std::atan2(apex_[h].y(), apex_[h].x());
+  constexpr Index at_a_time = 3 * 1024;
+  tbb::parallel_for(tbb::blocked_range(Index(0), mesh.n_halfedges(), at_a_time), [&](const auto& part) {
+    for (Index h = part.begin(); h < part.end(); ++h) {
+      const Vec3& a = mesh.position(mesh.from(h));
+      const Vec3 along = mesh.position(mesh.to(h)) - a;
+      const Vec3 towards = mesh.position(mesh.from(TriangleMesh::prev(h))) - a;
+      // Half-edges of one edge must agree to the last bit, so that both sides see the same interval.
+      length_[h] = mesh.edge_length(mesh.edge_of(h));
+      apex_[h] = length_[h] > 0 ? Vec2(along.dot(towards) / length_[h], along.cross(towards).norm() / length_[h])
+                                : Vec2(0, towards.norm());
+    }
+    angles_of(std::span(apex_).subspan(part.begin(), part.size()), std::span(angle_).subspan(part.begin(), part.size()));
   });
 }
 
@@ -72,10 +77,10 @@ IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh, std::span<const d
     const double left = edge_lengths[mesh.edge_of(TriangleMesh::prev(h))];
     length_[h] = edge_lengths[mesh.edge_of(h)];
     apex_[h] = apex_of(length_[h], right, left);
-    angle_[h] = std::atan2(apex_[h].y(), apex_[h].x());
     const double in_space = mesh.edge_length(mesh.edge_of(h));
     if (in_space > 0) max_stretch_ = std::max(max_stretch_, length_[h] / in_space);
   }
+  angles_of(apex_, angle_);
   const IntrinsicGeometry space(mesh);
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     Index h = 3 * f;  // on the longest edge a needle's layout is best known

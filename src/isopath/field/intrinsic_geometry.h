@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "isopath/core/geometry.h"
+#include "isopath/field/large_pages.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
@@ -49,9 +49,9 @@ class IntrinsicGeometry {
   bool is_metric_ = false;
   double max_stretch_ = 1;
   double size_ = 0;
-  std::vector<double> length_;
-  std::vector<Vec2> apex_;
-  std::vector<double> angle_;
+  LargeVector<double> length_;
+  LargeVector<Vec2> apex_;
+  LargeVector<double> angle_;
 };
 
 }  // namespace isopath

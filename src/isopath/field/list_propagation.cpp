@@ -1,11 +1,14 @@
 #include "isopath/field/list_propagation.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <tuple>
@@ -36,10 +39,15 @@ void note(Index item, Index bucket, std::vector<std::vector<Index>>& buckets) {
   buckets[bucket].push_back(item);
 }
 
+/// Of half-edges.
 double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) {
-  double sum = 0;
-  for (Index e = 0; e < mesh.n_edges(); ++e) sum += geometry.length(mesh.halfedge_of(e));
-  return sum / std::max<Index>(mesh.n_edges(), 1);
+  const tbb::blocked_range<Index> all(0, mesh.n_halfedges(), 1 << 14);
+  const auto add = [&](const auto& part, double sum) {
+    for (Index h = part.begin(); h < part.end(); ++h) sum += geometry.length(h);
+    return sum;
+  };
+  // The same for any number of threads.
+  return tbb::parallel_deterministic_reduce(all, 0.0, add, std::plus<>()) / std::max<Index>(mesh.n_halfedges(), 1);
 }
 
 }  // namespace
@@ -58,18 +66,17 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
       rounding_(geometry.rounding()) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
-    Site& site = sites_[h];
-    site.length = geometry.length(h);
     // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
     const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
-    site.apex = Vec2(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
-    site.twin = mesh.twin(h);
-    site.tail = mesh.from(h);
+    const Vec2 apex(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
+    sites_[h] = {{nullptr, nullptr, nullptr}, geometry.length(h), apex, mesh.twin(h), mesh.from(h), not_waiting, 0};
   });
   tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
     const std::span<const Spoke> ring = rings_.of(v);
-    for (const Spoke& spoke : ring) states_[v].total_angle += spoke.angle;
-    states_[v].may_bend = isopath::may_bend(!is_closed(ring), states_[v].total_angle);
+    double total_angle = 0;
+    for (const Spoke& spoke : ring) total_angle += spoke.angle;
+    const bool bends = isopath::may_bend(!is_closed(ring), total_angle);
+    states_[v] = {total_angle, {no_index, 0, 0, Vec2::UnitX()}, no_index, not_waiting, bends, false};
   });
 }
 
@@ -98,7 +105,7 @@ void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limit
   for (const SourceFronts::Vertex& source : fronts.vertices) {
     source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
     source_arcs_.push_back(source.blocked);
-    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex)}}, workshop);
+    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex), 0, 0, Vec2::UnitX()}}, workshop);
   }
   for (const SourceFronts::Front& front : fronts.fronts) {
     const Index h = front.halfedge;

@@ -68,29 +68,29 @@ class ListPropagation {
   /// How the shortest way reaches a vertex: the way back has the direction `back`, of any length, in the frame of an
   /// outgoing half-edge.
   struct Arrival {
-    Index halfedge = no_index;
-    float slack = 0;   ///< angle by which rounding may turn `back`
-    double error = 0;  ///< most that the distance is off, by merging windows
-    Vec2 back = Vec2::UnitX();
+    Index halfedge;
+    float slack;   ///< angle by which rounding may turn `back`
+    double error;  ///< most that the distance is off, by merging windows
+    Vec2 back;
   };
   /// All that is needed of a half-edge, on one line of the cache.
   struct alignas(64) Site {
-    WindowBlock* waiting[3] = {nullptr, nullptr, nullptr};  ///< by Feeder
-    double length = 0;
-    Vec2 apex = Vec2::Zero();
-    Index twin = no_index;
-    Index tail = no_index;
-    Index bucket = not_waiting;
-    Index memory = 0;  ///< number of its memory, counted from 1; or less the number of lists that crossed
+    WindowBlock* waiting[3];  ///< by Feeder
+    double length;
+    Vec2 apex;
+    Index twin;
+    Index tail;
+    Index bucket;
+    Index memory;  ///< number of its memory, counted from 1; or less the number of lists that crossed
   };
   /// And of a vertex.
   struct alignas(64) VertexState {
-    double total_angle = 0;
+    double total_angle;
     Arrival arrival;
-    Index root = no_index;
-    Index bucket = not_waiting;
-    bool may_bend = false;
-    bool locked = false;  ///< while one thread of several takes over a way
+    Index root;
+    Index bucket;
+    bool may_bend;
+    bool locked;  ///< while one thread of several takes over a way
   };
   struct Offer {
     Index vertex;

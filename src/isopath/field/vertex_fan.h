@@ -22,10 +22,10 @@ constexpr double angle_slack = 1e-12;
 
 /// An edge at a vertex, and the face that follows it counter-clockwise.
 struct Spoke {
-  double length = 0;
-  double angle = 0;           ///< of the face, at the vertex
-  Index halfedge = no_index;  ///< outgoing, of the face; no_index for the edge that closes the fan of a boundary vertex
-  Index to = no_index;        ///< the vertex at the other end
+  double length;
+  double angle;    ///< of the face, at the vertex
+  Index halfedge;  ///< outgoing, of the face; no_index for the edge that closes the fan of a boundary vertex
+  Index to;        ///< the vertex at the other end
 };
 
 /// The spokes of every vertex counter-clockwise, side by side in memory: a walk around a vertex through the mesh would
@@ -40,7 +40,7 @@ class VertexRings {
   }
 
  private:
-  std::vector<std::size_t> first_;
+  std::vector<Index> first_;
   LargeVector<Spoke> spokes_;
 };
 
