@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <random>
 #include <stdexcept>
@@ -34,6 +35,19 @@ TEST(Team, DoesEveryItemOnceInThousandsOfLoops) {
       ASSERT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(n)) << "loop " << loop;
     }
   }
+}
+
+TEST(Team, TakesWorkOfAnySize) {
+  Team team;
+  std::vector<int> times(1000);
+  std::array<int, 100> add{};
+  add.fill(1);
+  for (int loop = 0; loop < 100; ++loop) {
+    team.share(times.size(), 7, [&times, add](std::size_t first, std::size_t past, std::size_t) {
+      for (std::size_t i = first; i < past; ++i) times[i] += add[i % add.size()];
+    });
+  }
+  EXPECT_EQ(std::count(times.begin(), times.end(), 100), 1000);
 }
 
 TEST(Team, LetsEveryMemberWork) {

@@ -42,7 +42,7 @@ Team::~Team() {
   helpers_.wait();
 }
 
-void Team::run(std::size_t n, std::size_t at_a_time, Call call, const void* work) {
+void Team::run(std::size_t n, std::size_t at_a_time, Call call, const Words& work) {
   if (n == 0) return;
   if (size() < 2 || n < 2 * at_a_time) return call(work, 0, n, 0);
   if (!std::exchange(awake_, true)) {
@@ -50,17 +50,19 @@ void Team::run(std::size_t n, std::size_t at_a_time, Call call, const void* work
   }
   // Nothing is left in the shares: nobody takes part in the last loop any more, nor in this one before its parts are
   // out.
-  call_ = call;
-  work_ = work;
-  n_ = n;
-  at_a_time_ = at_a_time = std::max(at_a_time, n / most_parts + 1);
-  done_ = 0;
+  at_a_time = std::max(at_a_time, n / most_parts + 1);
+  done_.store(0, std::memory_order_relaxed);
   const std::size_t parts = (n + at_a_time - 1) / at_a_time;
   for (std::size_t k = 0; k < shares_.size(); ++k) {
     const std::size_t first = 2 * k * parts / size();
     const std::size_t past = std::min(2 * k + 2, size()) * parts / size();
-    const std::uint64_t loop = shares_[k].left / one_loop + 1;
-    shares_[k].left = loop * one_loop + first * one_part + past;
+    Share& share = shares_[k];
+    share.call.store(call, std::memory_order_relaxed);
+    share.n.store(n, std::memory_order_relaxed);
+    share.at_a_time.store(at_a_time, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < work.size(); ++i) share.work[i].store(work[i], std::memory_order_relaxed);
+    const std::uint64_t loop = share.left.load(std::memory_order_relaxed) / one_loop + 1;
+    share.left.store(loop * one_loop + first * one_part + past, std::memory_order_release);
   }
   do_parts(0);
   for (int times = 0; done_.load(std::memory_order_acquire) < n;) wait(times);
@@ -97,10 +99,11 @@ std::size_t Team::do_some_of(Share& share, std::size_t member) {
     const std::uint64_t first_part = left / one_part % one_part;
     const std::uint64_t past_part = left % one_part;
     if (first_part >= past_part) return 0;
-    const std::size_t n = n_.load(std::memory_order_acquire);
-    const std::size_t at_a_time = at_a_time_.load(std::memory_order_acquire);
-    const Call call = call_.load(std::memory_order_acquire);
-    const void* const work = work_.load(std::memory_order_acquire);
+    const std::size_t n = share.n.load(std::memory_order_relaxed);
+    const std::size_t at_a_time = share.at_a_time.load(std::memory_order_relaxed);
+    const Call call = share.call.load(std::memory_order_relaxed);
+    Words work;
+    for (std::size_t i = 0; i < work.size(); ++i) work[i] = share.work[i].load(std::memory_order_relaxed);
     const std::uint64_t some = (past_part - first_part + takes - 1) / takes;
     const std::uint64_t part = from_front ? first_part : past_part - some;
     const std::uint64_t then = from_front ? left + some * one_part : left - some;

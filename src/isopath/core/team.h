@@ -2,11 +2,14 @@
 
 #include <tbb/task_group.h>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -38,24 +41,43 @@ class Team {
   /// its front, the odd one from its back, until they meet; then they help others. So where loops follow each other
   /// over things in the same order, a member finds in its cache what it left there. One loop at a time, always from the
   /// same thread, which is member 0.
+  ///
+  /// Work that holds four words at most reaches the other members together with their parts; what it refers to they
+  /// fetch afterwards, one after the other, and between two processors far from each other each takes as long as an
+  /// item.
   template <class Work>
   void share(std::size_t n, std::size_t at_a_time, const Work& work) {
-    const auto call = [](const void* what, std::size_t first, std::size_t past, std::size_t member) {
-      (*static_cast<const Work*>(what))(first, past, member);
-    };
-    run(n, at_a_time, call, &work);
+    if constexpr (std::is_trivially_copyable_v<Work> && sizeof(Work) <= sizeof(Words)) {
+      Words words{};
+      std::memcpy(words.data(), &work, sizeof(Work));
+      run(n, at_a_time, do_part<Work>, words);
+    } else {
+      share(n, at_a_time, [&work](auto... part) { work(part...); });
+    }
   }
 
  private:
-  using Call = void (*)(const void* work, std::size_t first, std::size_t past, std::size_t member);
+  using Words = std::array<std::uint64_t, 4>;
+  using Call = void (*)(const Words& work, std::size_t first, std::size_t past, std::size_t member);
 
-  /// What two members begin with; the others help when they are done with theirs.
+  /// What two members begin with; the others help when they are done with theirs. All of it on one line of the cache.
   struct alignas(64) Share {
     /// Number of the loop, the first part that is left, and one past the last, in 28, 18 and 18 bits.
     std::atomic<std::uint64_t> left = 0;
+    std::atomic<Call> call = nullptr;
+    std::atomic<std::size_t> n = 0;
+    std::atomic<std::size_t> at_a_time = 1;
+    std::array<std::atomic<std::uint64_t>, 4> work{};
   };
 
-  void run(std::size_t n, std::size_t at_a_time, Call call, const void* work);
+  template <class Work>
+  static void do_part(const Words& words, std::size_t first, std::size_t past, std::size_t member) {
+    alignas(Work) std::byte work[sizeof(Work)];
+    std::memcpy(work, words.data(), sizeof(Work));
+    (*std::launder(reinterpret_cast<const Work*>(work)))(first, past, member);
+  }
+
+  void run(std::size_t n, std::size_t at_a_time, Call call, const Words& work);
   void help(std::size_t member);
   /// Does parts of the loop until none is left; true if there was one.
   bool do_parts(std::size_t member);
@@ -65,11 +87,7 @@ class Team {
   std::size_t size_;
   std::vector<Share> shares_;
   alignas(64) std::atomic<std::size_t> done_ = 0;
-  alignas(64) std::atomic<Call> call_ = nullptr;
-  std::atomic<const void*> work_ = nullptr;
-  std::atomic<std::size_t> at_a_time_ = 1;
-  std::atomic<std::size_t> n_ = 0;
-  std::atomic<bool> over_ = false;
+  alignas(64) std::atomic<bool> over_ = false;
   std::mutex lock_;
   std::exception_ptr thrown_;
   bool awake_ = false;
