@@ -61,7 +61,8 @@ IntrinsicGeometry::IntrinsicGeometry(const TriangleMesh& mesh)
       apex_[h] = length_[h] > 0 ? Vec2(along.dot(towards) / length_[h], along.cross(towards).norm() / length_[h])
                                 : Vec2(0, towards.norm());
     }
-    angles_of(std::span(apex_).subspan(part.begin(), part.size()), std::span(angle_).subspan(part.begin(), part.size()));
+    angles_of(std::span(apex_).subspan(part.begin(), part.size()),
+              std::span(angle_).subspan(part.begin(), part.size()));
   });
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isopath/field/list_propagation.h"
+#include "isopath/field/prefetch.h"
 
 namespace isopath {
 namespace {
@@ -123,8 +124,10 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
 
   const Index next = TriangleMesh::next(h);
   const Index previous = TriangleMesh::prev(h);
+  for (const Index leaving : {previous, next}) prefetch_to_write(&sites_[std::max(sites_[leaving].twin, 0)]);
+  const Index corner = sites_[previous].tail;
+  if (is_shared_) __builtin_prefetch(&mesh_.position(corner));
   const Site& site = sites_[h];
-  for (const Index leaving : {previous, next}) __builtin_prefetch(&sites_[std::max(sites_[leaving].twin, 0)], 1);
   const Site& right = sites_[next];
   const StepGeometry triangle{site.length,
                               site.apex,
@@ -143,9 +146,8 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
     double* side_of_begin = workshop.sides[0].data();
     double* side_of_end = workshop.sides[1].data();
     const ApexReach apex = reach_apex(windows, n, triangle, margin_, side_of_begin, side_of_end);
-    const Index corner = sites_[previous].tail;
     if (apex.distance < distances_[corner]) {
-      __builtin_prefetch(&states_[corner], 1);
+      prefetch_to_write(&states_[corner]);
       Offer& offer = workshop.offers.emplace_back();
       offer = {corner, no_index, apex.distance, arrival_at_apex(windows, apex, triangle, previous)};
       if (retain_) {
@@ -153,6 +155,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
         offer.arrival.error = windows.error[apex.window];
       }
     }
+    const float place = along(corner);
     const auto send = [&](auto&& cross_to, Index leaving, Feeder feeder, std::size_t at_most) {
       const Index entering = waiting_place(leaving);
       if (entering == no_index || at_most == 0) return;
@@ -162,7 +165,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
       if (block->size == 0) return workshop.blocks.give_back(block);
       block->depth = crossing.depth + 1;
       put_down(entering, feeder, block);
-      push_halfedge(entering, block->least, workshop);
+      push_halfedge(entering, block->least, place, workshop);
     };
     send(cross_to_left, previous, from_next, apex.n_left);
     send(cross_to_right, next, from_previous, apex.n_right);

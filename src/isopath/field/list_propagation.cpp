@@ -14,6 +14,8 @@
 #include <tuple>
 #include <utility>
 
+#include "isopath/field/prefetch.h"
+
 namespace isopath {
 namespace {
 
@@ -21,22 +23,11 @@ namespace {
 constexpr double widest_slit = 1e-9;
 /// Rises less than any direction is known to.
 constexpr double least_slope = 1e-20;
-/// Shares of a thread in a round.
-constexpr std::size_t lists_at_a_time = 8;
-constexpr std::size_t vertices_at_a_time = 16;
-/// Fewer are taken over sooner than another thread hears of them.
-constexpr std::size_t least_shared_offers = 64;
-/// Items are fetched into the cache this many places before their turn; headers of lists twice as many.
-constexpr std::ptrdiff_t ahead = 4;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
 constexpr double bucket_width = 0.5;
-/// Lists cross a half-edge a few times. Around closed needles they would go on and on, each turn a little longer than
-/// the one before: after so many times a half-edge begins to remember what crossed.
-constexpr Index lists_without_memory = 64;
-
-void note(Index item, Index bucket, std::vector<std::vector<Index>>& buckets) {
-  if (bucket >= static_cast<Index>(buckets.size())) buckets.resize(bucket + 1);
-  buckets[bucket].push_back(item);
+void note(const FrontOrder::Noted& noted, Index bucket, FrontOrder::Notes& notes) {
+  if (bucket >= static_cast<Index>(notes.size())) notes.resize(bucket + 1);
+  notes[bucket].push_back(noted);
 }
 
 /// Of half-edges.
@@ -64,7 +55,8 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       fans_(retain ? mesh.n_halfedges() : 0),
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
-      rounding_(geometry.rounding()) {
+      rounding_(geometry.rounding()),
+      order_(mesh.bounds()) {
   tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
     // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
     const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
@@ -165,18 +157,18 @@ void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fr
       block->least = std::min(block->least, std::max(turned.min_distance(), 0.0));
     }
     put_down(place, from_corner, block);
-    push_halfedge(place, block->least, workshop);
+    push_halfedge(place, block->least, along(sites_[place].tail), workshop);
   }
 }
 
-void ListPropagation::push_halfedge(Index halfedge, double least, Workshop& workshop) {
+void ListPropagation::push_halfedge(Index halfedge, double least, float along, Workshop& workshop) {
   const Index bucket = std::max(bucket_, static_cast<Index>(least / bucket_width_));
   const std::atomic_ref<Index> known(sites_[halfedge].bucket);
   Index before = known.load(std::memory_order_relaxed);
   do {
     if (bucket >= before) return;
   } while (!known.compare_exchange_weak(before, bucket, std::memory_order_relaxed));
-  note(halfedge, bucket, workshop.halfedges);
+  note({halfedge, along}, bucket, workshop.halfedges);
 }
 
 void ListPropagation::offer_vertex(const Offer& offer, Workshop& workshop) {
@@ -193,7 +185,7 @@ void ListPropagation::offer_vertex(const Offer& offer, Workshop& workshop) {
   const Index bucket = std::max(bucket_, static_cast<Index>(distance / bucket_width_));
   if (bucket >= state.bucket) return;
   state.bucket = bucket;
-  note(offer.vertex, bucket, workshop.vertices);
+  note({offer.vertex, along(offer.vertex)}, bucket, workshop.vertices);
 }
 
 void ListPropagation::offer_vertex_locked(const Offer& offer, Workshop& workshop) {
@@ -225,7 +217,7 @@ void ListPropagation::relax_edges(Index vertex, Workshop& workshop) const {
     const Spoke& spoke = ring[k];
     const double there = distance + spoke.length;
     if (!(there < distances_[spoke.to])) continue;
-    __builtin_prefetch(&states_[spoke.to], 1);
+    prefetch_to_write(&states_[spoke.to]);
     const float slack = slack_at(spoke.length);
     Arrival arrival{no_index, slack > widest_slit ? slack : 0, from.arrival.error, Vec2::UnitX()};
     if (k == 0 && !is_closed(ring)) {
@@ -282,7 +274,7 @@ void ListPropagation::send_fan(const Fan& fan, Workshop& workshop) {
   const Site& opposite = sites_[TriangleMesh::next(fan.outgoing)];
   const Index place = waiting_place(TriangleMesh::next(fan.outgoing));
   if (place == no_index) return;
-  __builtin_prefetch(&sites_[place], 1);
+  prefetch_to_write(&sites_[place]);
   const FanInterval interval = fan_interval(outgoing.length, outgoing.apex, opposite.length, fan.low, fan.high);
   // From a corner next to the opposite edge many directions pass within a rounding error.
   Window window;
@@ -298,154 +290,7 @@ void ListPropagation::send_fan(const Fan& fan, Workshop& workshop) {
   block->size = 1;
   block->least = window.min_distance();
   put_down(place, from_corner, block);
-  push_halfedge(place, block->least, workshop);
-}
-
-void ListPropagation::run_vertices(Team& team) {
-  gather_noted(&Workshop::vertices, active_);
-  team.share(active_.size(), vertices_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
-    Workshop& workshop = workshops_[member];
-    for (std::size_t begin = first, end = first; begin < past; begin = end) {
-      end = std::min(begin + vertices_at_a_time, past);
-      workshop.fans.clear();
-      for (std::size_t i = begin; i < end; ++i) {
-        if (i + ahead < active_.size()) fetch_around(active_[i + ahead]);
-        if (!stops_waiting(states_[active_[i]].bucket)) continue;
-        relax_edges(active_[i], workshop);
-        find_fans(active_[i], workshop);
-      }
-      for (const Fan& fan : workshop.fans) send_fan(fan, workshop);
-    }
-  });
-  take_over_offers(team);
-}
-
-void ListPropagation::take_over_offers(Team& team) {
-  std::size_t n = 0;
-  for (const Workshop& workshop : workshops_) n += workshop.offers.size();
-  const bool shared = team.size() > 1 && n >= least_shared_offers;
-  const auto take_over = [&](std::size_t first, std::size_t past, std::size_t) {
-    for (std::size_t k = first; k < past; ++k) {
-      Workshop& workshop = workshops_[k];
-      for (const Offer& offer : workshop.offers) {
-        shared ? offer_vertex_locked(offer, workshop) : offer_vertex(offer, workshop);
-      }
-      workshop.offers.clear();
-    }
-  };
-  if (shared) {
-    team.share(workshops_.size(), 1, take_over);
-  } else {
-    take_over(0, workshops_.size(), 0);
-  }
-}
-
-void ListPropagation::fetch_around(Index vertex) const {
-  const std::span<const Spoke> ring = rings_.of(vertex);
-  for (std::size_t k = 0; k < ring.size(); k += 2) __builtin_prefetch(&ring[k]);
-  __builtin_prefetch(&states_[vertex]);
-}
-
-void ListPropagation::fetch(const Crossing& crossing, const WindowBlocks& blocks) const {
-  const Index first = crossing.halfedge - crossing.halfedge % 3;
-  for (Index h = first; h < first + 3; ++h) {
-    __builtin_prefetch(&sites_[h]);
-  }
-  for (const WindowBlock* block : crossing.lists) {
-    if (block != nullptr) blocks.fetch(block);
-  }
-}
-
-bool ListPropagation::stops_waiting(Index& bucket) const {
-  Index noted = bucket_;
-  return std::atomic_ref<Index>(bucket).compare_exchange_strong(noted, not_waiting, std::memory_order_relaxed);
-}
-
-bool ListPropagation::take(Index halfedge, Crossing& crossing, Workshop& workshop) {
-  Site& site = sites_[halfedge];
-  if (!stops_waiting(site.bucket)) return false;
-  crossing.halfedge = halfedge;
-  crossing.depth = std::numeric_limits<Index>::max();
-  for (int k = 0; k < 3; ++k) crossing.lists[k] = std::exchange(site.waiting[k], nullptr);
-  if (site.memory <= 0 && --site.memory <= -lists_without_memory) workshop.crowded.push_back(halfedge);
-  return true;
-}
-
-void ListPropagation::run_lists(Team& team) {
-  gather_noted(&Workshop::halfedges, waiting_);
-  if (crossings_.size() < waiting_.size()) crossings_.resize(waiting_.size());
-  // All are taken before one crosses: what crosses may be put down where another one waits.
-  team.share(waiting_.size(), 4 * lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
-    Workshop& workshop = workshops_[member];
-    for (std::size_t i = first; i < past; ++i) {
-      if (i + ahead < past) __builtin_prefetch(&sites_[waiting_[i + ahead]], 1);
-      if (!take(waiting_[i], crossings_[i], workshop)) crossings_[i].halfedge = no_index;
-    }
-  });
-  for (Workshop& workshop : workshops_) {
-    for (const Index h : workshop.crowded) {
-      memories_.emplace_back().reset(sites_[h].length, snap_width(sites_[h].length));
-      sites_[h].memory = static_cast<Index>(memories_.size());
-    }
-    workshop.crowded.clear();
-  }
-  const auto n = static_cast<std::ptrdiff_t>(waiting_.size());
-  team.share(waiting_.size(), lists_at_a_time, [&](std::size_t first, std::size_t past, std::size_t member) {
-    Workshop& workshop = workshops_[member];
-    const std::ptrdiff_t step = member % 2 == 0 ? 1 : -1;
-    std::ptrdiff_t i = member % 2 == 0 ? first : past - 1;
-    for (std::size_t times = past - first; times > 0; --times, i += step) {
-      // What comes after this part most likely is the next one.
-      const std::ptrdiff_t soon = i + step * ahead;
-      const std::ptrdiff_t later = soon + step * ahead;
-      if (0 <= later && later < n) {
-        for (const WindowBlock* block : crossings_[later].lists) __builtin_prefetch(block);
-      }
-      if (0 <= soon && soon < n) fetch(crossings_[soon], workshop.blocks);
-      if (crossings_[i].halfedge != no_index) cross(crossings_[i], workshop);
-    }
-  });
-  take_over_offers(team);
-}
-
-void ListPropagation::gather_noted(Noted noted, std::vector<Index>& all) {
-  all.clear();
-  // Odd members of the team take parts from back to front: in this order what they noted lies where they begin.
-  for (std::size_t k = 0; k < workshops_.size(); ++k) {
-    std::vector<std::vector<Index>>& buckets = workshops_[k].*noted;
-    if (bucket_ >= static_cast<Index>(buckets.size())) continue;
-    std::vector<Index>& own = buckets[bucket_];
-    if (k % 2 == 0) {
-      all.insert(all.end(), own.begin(), own.end());
-    } else {
-      all.insert(all.end(), own.rbegin(), own.rend());
-    }
-    own.clear();
-  }
-}
-
-bool ListPropagation::are_waiting(Noted noted) const {
-  return std::any_of(workshops_.begin(), workshops_.end(), [&](const Workshop& workshop) {
-    const std::vector<std::vector<Index>>& buckets = workshop.*noted;
-    return bucket_ < static_cast<Index>(buckets.size()) && !buckets[bucket_].empty();
-  });
-}
-
-void ListPropagation::run(double stop_distance, Progress& progress) {
-  Team team;
-  while (workshops_.size() < team.size()) workshops_.emplace_back(retain_);
-  for (bucket_ = 0; bucket_ * bucket_width_ <= stop_distance; ++bucket_) {
-    std::size_t past = 0;
-    for (const Workshop& workshop : workshops_)
-      past = std::max({past, workshop.vertices.size(), workshop.halfedges.size()});
-    if (bucket_ >= static_cast<Index>(past)) break;
-    while (are_waiting(&Workshop::vertices) || are_waiting(&Workshop::halfedges)) {
-      progress.checkpoint();
-      if (are_waiting(&Workshop::vertices)) run_vertices(team);
-      if (are_waiting(&Workshop::halfedges)) run_lists(team);
-    }
-  }
-  progress.at(1);
+  push_halfedge(place, block->least, along(fan.vertex), workshop);
 }
 
 }  // namespace isopath

@@ -11,6 +11,7 @@
 #include "isopath/core/progress.h"
 #include "isopath/core/team.h"
 #include "isopath/field/edge_envelope.h"
+#include "isopath/field/front_order.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
 #include "isopath/field/list_step.h"
@@ -128,11 +129,15 @@ class ListPropagation {
 
     WindowBlocks blocks;
     bool tagged;
-    std::vector<std::vector<Index>> halfedges;  ///< where lists wait, by bucket
-    std::vector<std::vector<Index>> vertices;   ///< that wait, by bucket
-    std::vector<Offer> offers;                  ///< to neighbours, and to the corners of triangles that were crossed
-    std::vector<Fan> fans;                      ///< of some vertices
-    std::vector<Index> crowded;                 ///< half-edges that shall begin to remember
+    // What other threads look at in a round, apart from what changes all the time.
+    alignas(64) std::vector<FrontOrder::Noted> active;  ///< vertices of this round
+    std::vector<Crossing> crossings;                    ///< lists of this round
+    alignas(64) FrontOrder::Notes halfedges;            ///< where lists wait
+    FrontOrder::Notes vertices;                         ///< that wait
+    std::vector<Index> crowded;                         ///< half-edges that shall begin to remember
+    alignas(64) std::vector<Offer> offers;  ///< to neighbours, and to the corners of triangles that were crossed
+    std::vector<Fan> fans;                  ///< of some vertices
+    std::vector<FrontOrder::Noted> sorted;
     std::size_t propagated = 0;
     EdgeEnvelope envelope;
     std::vector<WindowBlock*> waiting;
@@ -145,13 +150,13 @@ class ListPropagation {
 
   /// Lists of the fronts that leave the sources' faces.
   void put_down_fronts(const std::vector<SourceFronts::Front>& fronts, Workshop& workshop);
-  void push_halfedge(Index halfedge, double least, Workshop& workshop);
+  void push_halfedge(Index halfedge, double least, float along, Workshop& workshop);
   /// Takes a way over if it is shorter; a vertex that thereby begins to wait is noted in the workshop.
   void offer_vertex(const Offer& offer, Workshop& workshop);
   /// The same, for several threads at a time.
   void offer_vertex_locked(const Offer& offer, Workshop& workshop);
-  /// Takes over what all members found for vertices, each its own: so a member's cache holds the vertices it found.
-  void take_over_offers(Team& team);
+  /// Takes over what a member found for vertices.
+  void take_over_offers(Workshop& workshop, bool among_others);
   /// Where lists wait that leave a face by this half-edge: at its twin; on the boundary at itself, in the twin's frame,
   /// when windows are retained.
   Index waiting_place(Index leaving) const {
@@ -192,12 +197,24 @@ class ListPropagation {
   bool stops_waiting(Index& bucket) const;
   /// The lists that wait at a half-edge for this bucket; false when they were taken before.
   bool take(Index halfedge, Crossing& crossing, Workshop& workshop);
-  using Noted = std::vector<std::vector<Index>> Workshop::*;
-  /// What all members noted for this bucket, put into `all` so that each finds its own where it begins.
-  void gather_noted(Noted noted, std::vector<Index>& all);
-  bool are_waiting(Noted noted) const;
-  void run_vertices(Team& team);
+  /// What was noted for this bucket, in order.
+  void collect(FrontOrder::Notes& notes, std::vector<FrontOrder::Noted>& sorted) const;
+  using Notes = FrontOrder::Notes Workshop::*;
+  std::size_t n_waiting(Notes notes, const Workshop& workshop) const;
+  /// Calls work(workshop) for each, at the same time where there is much to do: offers to take over, and what is noted.
+  template <class Work>
+  void each_workshop(Team& team, Notes notes, const Work& work);
+  /// Calls work(items, first, past, member) for parts of the items of all workshops, at the same time.
+  template <class Item, class Work>
+  void share(Team& team, std::vector<Item> Workshop::*items, std::size_t at_a_time, const Work& work);
+  /// Vertices that wait hand on their distance; false when none does.
+  bool run_vertices(Team& team);
   void run_lists(Team& team);
+  void remember_crowded();
+  /// Where threads that share the front meet; one thread alone asks for no order.
+  float along(Index vertex) const { return is_shared_ ? order_.along(mesh_.position(vertex)) : 0; }
+  /// Turns the axis of the order to the present front.
+  void turn_order();
 
   void fetch_kept(Index edge) const;
   void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
@@ -217,14 +234,13 @@ class ListPropagation {
   std::vector<KeptList*> kept_;                         ///< per half-edge, when windows are retained
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
   std::vector<EdgeEnvelope> memories_;                  ///< of half-edges that are crossed again and again
-  std::vector<Index> active_;                           ///< vertices
-  std::vector<Index> waiting_;                          ///< half-edges
-  std::vector<Crossing> crossings_;
-  std::deque<Workshop> workshops_;  ///< by member of the team
-  Index bucket_ = 0;
+  std::deque<Workshop> workshops_;                      ///< by member of the team
   double bucket_width_ = 1;
   double rounding_ = 0;  ///< of coordinates and distances
   double margin_ = 0;
+  bool is_shared_ = false;
+  FrontOrder order_;
+  Index bucket_ = 0;
 };
 
 }  // namespace isopath
