@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -48,7 +49,6 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       geometry_(geometry),
       retain_(retain),
       sites_(mesh.n_halfedges()),
-      rings_(mesh, geometry),
       states_(mesh.n_vertices()),
       distances_(mesh.n_vertices(), infinity),
       source_at_(mesh.n_vertices(), no_index),
@@ -57,12 +57,16 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
       rounding_(geometry.rounding()),
       order_(mesh.bounds()) {
-  tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
-    // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
-    const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
-    const Vec2 apex(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
-    sites_[h] = {{nullptr, nullptr, nullptr}, geometry.length(h), apex, mesh.twin(h), mesh.from(h), not_waiting, 0};
-  });
+  const auto lay_out_sites = [&] {
+    tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
+      // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
+      const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
+      const Vec2 apex(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
+      sites_[h] = {{nullptr, nullptr, nullptr}, geometry.length(h), apex, mesh.twin(h), mesh.from(h), not_waiting, 0};
+    });
+  };
+  // Spokes are counted by one thread alone.
+  tbb::parallel_invoke([&] { rings_ = VertexRings(mesh, geometry); }, lay_out_sites);
   tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
     const std::span<const Spoke> ring = rings_.of(v);
     double total_angle = 0;

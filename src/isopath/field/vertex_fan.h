@@ -33,6 +33,7 @@ struct Spoke {
 /// it; elsewhere from the vertex's outgoing half-edge once around. None where no face uses the vertex.
 class VertexRings {
  public:
+  VertexRings() = default;
   VertexRings(const TriangleMesh& mesh, const IntrinsicGeometry& geometry);
 
   std::span<const Spoke> of(Index vertex) const {
