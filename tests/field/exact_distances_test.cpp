@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "isopath/core/error.h"
 #include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
+#include "isopath/field/graph_field.h"
 #include "isopath/field/list_propagation.h"
 #include "support/random_sources.h"
 #include "support/slow_exact.h"
@@ -111,6 +113,30 @@ TEST(ExactDistances, TiesDoNotDependOnTheNumberOfThreads) {
   const std::vector<Index> alone = with_threads(1, roots);
   for (int again = 0; again < 3; ++again) {
     for (const int threads : {2, 8}) ASSERT_EQ(with_threads(threads, roots), alone) << threads << " threads";
+  }
+}
+
+TEST(ExactDistances, TheirReachAlongEdgesIsThatOfTheGraph) {
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    Rng rng(seed);
+    const TriangleMesh mesh = random_mesh(rng, {.closed = seed % 3 == 0, .holes = seed % 5 == 0});
+    SourceSet sources;
+    for (int i = 0; i < 2; ++i) sources.add_vertex(mesh, mesh.from(random_index(rng, mesh.n_halfedges())));
+    const IntrinsicGeometry geometry(mesh);
+    ListPropagation propagation(mesh, geometry, seed % 2 == 0);
+    propagation.start(source_fronts(mesh, geometry, sources));
+    const std::vector<double> distances = graph_distances(mesh, sources);
+    const auto farthest = [&](double stop) {
+      double found = 0;
+      for (const double d : distances) found = d <= stop ? std::max(found, d) : found;
+      return found;
+    };
+    const double all = farthest(1e3 * mesh.size());
+    for (const double stop : {infinity, 0.6 * all}) {
+      const double expected = stop < infinity ? farthest(stop) : all;
+      EXPECT_NEAR(propagation.reach_along_edges(stop, Progress::none()), expected, 1e-12 * mesh.size());
+    }
   }
 }
 

@@ -13,14 +13,6 @@
 namespace isopath {
 namespace {
 
-double length_of(const TriangleMesh& mesh, const std::vector<SurfacePoint>& line) {
-  double length = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    length += (position_of(mesh, line[i]) - position_of(mesh, line[i - 1])).norm();
-  }
-  return length;
-}
-
 /// A direction in a point's face, at an angle from its first edge.
 Vec3 direction_at(const TriangleMesh& mesh, const SurfacePoint& point, double angle) {
   const Vec3 along = (mesh.position(mesh.to(3 * point.face)) - mesh.position(mesh.from(3 * point.face))).normalized();
@@ -29,7 +21,7 @@ Vec3 direction_at(const TriangleMesh& mesh, const SurfacePoint& point, double an
 
 /// What a walk promises whatever the surface.
 void expect_walk(const TriangleMesh& mesh, const StraightWalk& walk, double longest) {
-  EXPECT_NEAR(length_of(mesh, walk.points), walk.length, 1e-9 * (mesh.size() + longest));
+  EXPECT_NEAR(test::length_of(mesh, walk.points), walk.length, 1e-9 * (mesh.size() + longest));
   if (walk.at_boundary) {
     EXPECT_LE(walk.length, longest);
     const Support end = support_of(mesh, walk.points.back());

@@ -13,14 +13,6 @@
 namespace isopath {
 namespace {
 
-double length_of(const TriangleMesh& mesh, const std::vector<SurfacePoint>& way) {
-  double length = 0;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    length += (position_of(mesh, way[i]) - position_of(mesh, way[i - 1])).norm();
-  }
-  return length;
-}
-
 /// A point of a random face: inside it, on an edge or on a vertex.
 SurfacePoint random_point(const TriangleMesh& mesh, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(0, 1);
@@ -48,8 +40,8 @@ void expect_valid(const TriangleMesh& mesh, const std::vector<SurfacePoint>& way
     EXPECT_NE(support_of(mesh, way[i]).kind, Support::Kind::face);
   }
   const double chord = (position_of(mesh, to) - position_of(mesh, from)).norm();
-  EXPECT_GE(length_of(mesh, way), chord * (1 - 1e-12));
-  EXPECT_LE(length_of(mesh, way), 4.5 * chord + 1e-12 * mesh.size());
+  EXPECT_GE(test::length_of(mesh, way), chord * (1 - 1e-12));
+  EXPECT_LE(test::length_of(mesh, way), 4.5 * chord + 1e-12 * mesh.size());
 }
 
 TEST(SurfaceWalk, OnAPlaneItIsTheStraightLine) {
@@ -63,7 +55,7 @@ TEST(SurfaceWalk, OnAPlaneItIsTheStraightLine) {
     expect_valid(mesh, way, from, to);
     const Vec3 a = position_of(mesh, from);
     const Vec3 b = position_of(mesh, to);
-    EXPECT_NEAR(length_of(mesh, way), (b - a).norm(), 1e-10);
+    EXPECT_NEAR(test::length_of(mesh, way), (b - a).norm(), 1e-10);
     for (const SurfacePoint& p : way) EXPECT_NEAR((position_of(mesh, p) - a).cross(b - a).norm(), 0, 1e-9);
     if (HasFailure()) return;
   }
@@ -111,7 +103,7 @@ TEST(SurfaceWalk, OnACylinderItLiesInThePlaneOfBothPointsAndTheirMeanNormal) {
     const auto way = surface_walk(mesh, from, to);
     expect_valid(mesh, way, from, to);
     const double helix = std::hypot(10 * angle, 22.7 - 4.1);
-    EXPECT_NEAR(length_of(mesh, way), helix, 0.01 * helix);
+    EXPECT_NEAR(test::length_of(mesh, way), helix, 0.01 * helix);
     const Vec3 a = position_of(mesh, from);
     const Vec3 middle_normal(std::cos(0.3 + angle / 2), std::sin(0.3 + angle / 2), 0);
     const Vec3 plane = (position_of(mesh, to) - a).cross(middle_normal).normalized();

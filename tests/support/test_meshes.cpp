@@ -339,4 +339,11 @@ TriangleMesh face_split(const TriangleMesh& mesh, Index face, const Vec3& baryce
   return TriangleMesh(std::move(soup));
 }
 
+double length_of(const TriangleMesh& mesh, std::span<const SurfacePoint> points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    length += (position_of(mesh, points[i]) - position_of(mesh, points[i - 1])).norm();
+  return length;
+}
+
 }  // namespace isopath::test

@@ -91,6 +91,8 @@ TriangleMesh face_split(const TriangleMesh& mesh, Index face, const Vec3& baryce
 double random_real(Rng& rng, double low, double high);
 /// Uniform in [0, n).
 Index random_index(Rng& rng, Index n);
+/// Of the straight ways from point to point.
+double length_of(const TriangleMesh& mesh, std::span<const SurfacePoint> points);
 /// Inside a face, uniform by area.
 SurfacePoint random_surface_point(Rng& rng, const TriangleMesh& mesh);
 /// In a face, on an edge or at a vertex, each a third of the time.

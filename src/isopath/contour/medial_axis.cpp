@@ -59,9 +59,9 @@ class BisectorTracer {
   /// The windows of an edge that are more than cracks.
   void windows_of(Index edge, std::vector<const Window*>& windows) const {
     windows.clear();
-    data_.for_each_window(edge, [&](const Window& w) {
+    for (const Window& w : data_.windows.of(edge)) {
       if (w.end - w.begin > narrowest_window * rule_.size) windows.push_back(&w);
-    });
+    }
     // where rounding left a crack between real fronts, a path along the edge fills it with a longer distance
     const double jump = 1e-9 * rule_.size;
     for (std::size_t k = windows.size(); k-- > 0;) {

@@ -9,7 +9,6 @@
 #include "isopath/core/error.h"
 #include "isopath/core/side_by_side.h"
 #include "isopath/field/exact_field_data.h"
-#include "isopath/field/graph_field.h"
 #include "isopath/field/list_propagation.h"
 
 namespace isopath {
@@ -100,21 +99,13 @@ class DirectionCone {
 };
 
 /// Merging is to last until the farthest point; paths along edges tell about how far that is.
-MergeLimits merge_limits(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, const SourceSet& sources,
-                         const ExactFieldOptions& options, Progress& progress) {
-  MergeLimits limits{.accuracy = options.accuracy, .size = geometry.size()};
-  if (options.accuracy == 0) return limits;
-  if (options.expected_reach > 0) {
-    limits.reach = std::min(options.stop_distance, options.expected_reach);
-    return limits;
-  }
-  double farthest = 0;
-  for (const double d : graph_distances(mesh, sources, {}, progress)) {
-    if (d < infinity) farthest = std::max(farthest, d);
-  }
-  // surfaces are crossed a little faster than along edges
-  limits.reach = std::min(options.stop_distance, 0.85 * farthest * geometry.max_stretch());
-  return limits;
+MergeLimits merge_limits(const ListPropagation& propagation, double size, const ExactFieldOptions& options,
+                         Progress& progress) {
+  if (options.accuracy == 0) return {.size = size};
+  constexpr double across = 0.85;  // surfaces are crossed a little faster than along edges
+  double reach = options.expected_reach;
+  if (!(reach > 0)) reach = across * propagation.reach_along_edges(options.stop_distance / across, progress);
+  return {.accuracy = options.accuracy, .size = size, .reach = std::min(options.stop_distance, reach)};
 }
 
 }  // namespace
@@ -146,28 +137,22 @@ ExactField ExactField::run(std::unique_ptr<ExactFieldData> data, const ExactFiel
   const SourceSet& sources = data->sources;
   if (sources.empty()) throw Error(ErrorCode::bad_usage, "a distance field needs at least one source");
   options.validate();
-  MergeLimits limits;
   SourceFronts fronts;
   std::optional<ListPropagation> room;
-  side_by_side(
-      [&] {
-        index_sources(*data);
-        limits = merge_limits(data->mesh, data->geometry, sources, options, progress);
-      },
-      [&] {
-        fronts = source_fronts(data->mesh, data->geometry, sources, progress);
-        room.emplace(data->mesh, data->geometry, true);
-      });
+  side_by_side([&] { index_sources(*data); },
+               [&] {
+                 fronts = source_fronts(data->mesh, data->geometry, sources, progress);
+                 room.emplace(data->mesh, data->geometry, true);
+               });
   ListPropagation& propagation = *room;
-  propagation.start(fronts, limits);
+  propagation.start(fronts);
+  propagation.merge_within(merge_limits(propagation, data->geometry.size(), options, progress));
   propagation.run(options.stop_distance, progress);
   data->propagated = propagation.propagated();
-  ListPropagation::RetainedWindows retained = propagation.take_windows(progress);
-  data->windows = std::move(retained.windows);
-  data->first_window = std::move(retained.first);
+  data->windows = propagation.take_windows(progress);
   data->distance = propagation.vertex_distances();
   data->root = propagation.vertex_roots();
-  data->fans = std::move(propagation.fans());
+  data->fans = propagation.fans();
   if (options.many_questions) data->trees = FaceTrees(*data, progress);
   data->reach = options.stop_distance;
   ExactField field(std::move(data));
@@ -217,18 +202,16 @@ SurfaceFunction::Slope ExactField::slope(const SurfacePoint& point) const {
 }
 
 void ExactField::edge_crossings(Index edge, double level, std::vector<double>& parameters) const {
-  const std::size_t first = data_->first_window[edge];
-  const std::size_t past = data_->first_window[edge + 1];
+  const std::span<const Window> windows = data_->windows.of(edge);
   const Index h = data_->mesh.halfedge_of(edge);
   const double length = data_->geometry.length(h);
   bool above = data_->distance[data_->mesh.from(h)] >= level;
   const bool ends_above = data_->distance[data_->mesh.to(h)] >= level;
-  for (std::size_t i = first; i < past; ++i) {
-    const Window& w = data_->windows[i];
-    const bool above_after =
-        i + 1 == past
-            ? ends_above
-            : std::min(w.distance(w.end), data_->windows[i + 1].distance(data_->windows[i + 1].begin)) >= level;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const Window& w = windows[i];
+    const bool above_after = i + 1 == windows.size()
+                                 ? ends_above
+                                 : std::min(w.distance(w.end), windows[i + 1].distance(windows[i + 1].begin)) >= level;
     const double r = level - w.offset;
     const auto add = [&](double x) { parameters.push_back(std::clamp(x, w.begin, w.end) / length); };
     if (above != above_after) {
@@ -264,8 +247,7 @@ bool ExactField::monotone_in_face(Index face) const {
     }
     const Index edge = data_->mesh.edge_of(h);
     const double sign = data_->mesh.halfedge_of(edge) == h ? 1 : -1;
-    for (std::size_t id = data_->first_window[edge]; id < data_->first_window[edge + 1]; ++id) {
-      const Window& w = data_->windows[id];
+    for (const Window& w : data_->windows.of(edge)) {
       if (w.halfedge != h) continue;
       if (!add(sign * w.direction(w.begin)) || !add(sign * w.direction(w.end))) return false;
     }

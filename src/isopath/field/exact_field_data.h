@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "isopath/field/edge_windows.h"
 #include "isopath/field/face_trees.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/list_propagation.h"
@@ -17,24 +18,6 @@ struct ExactFieldData {
   ExactFieldData(const TriangleMesh& m, IntrinsicGeometry g, const SourceSet& s)
       : mesh(m), geometry(std::move(g)), sources(s) {}
 
-  /// Ids of an edge's windows: from first_window[edge] up to first_window[edge + 1].
-  template <class Visit>
-  void for_each_window(Index edge, Visit&& visit) const {
-    for (std::size_t id = first_window[edge]; id < first_window[edge + 1]; ++id) visit(windows[id]);
-  }
-  /// The same for the windows that reach into [low, high] of the edge.
-  template <class Visit>
-  void for_each_window(Index edge, double low, double high, Visit&& visit) const {
-    std::size_t id = first_window[edge];
-    std::size_t past = first_window[edge + 1];
-    while (past - id > 8) {  // windows are sorted: the first that ends behind `low`
-      const std::size_t middle = id + (past - id) / 2;
-      (windows[middle].end < low ? id : past) = middle;
-    }
-    for (; id < first_window[edge + 1] && windows[id].begin <= high; ++id) {
-      if (windows[id].end >= low) visit(windows[id]);
-    }
-  }
   /// A source element in the frame of half-edge 3·face of a face that it touches.
   struct PlacedSource {
     Index id = no_index;
@@ -59,8 +42,7 @@ struct ExactFieldData {
   const TriangleMesh& mesh;
   IntrinsicGeometry geometry;
   SourceSet sources;
-  std::vector<Window> windows;
-  std::vector<std::size_t> first_window;   ///< per edge, and one past the last
+  EdgeWindows windows;
   std::vector<double> distance;            ///< per vertex
   std::vector<Index> root;                 ///< per vertex
   std::vector<FanArc> fans;                ///< per half-edge: what its tail, as a pseudo-source, sends into its face
@@ -80,11 +62,12 @@ struct WayBack {
   double distance = infinity;  ///< length of the whole path
   Index root = no_index;
   Stop stop = Stop::none;
-  Index at = no_index;          ///< source element, vertex, or half-edge of the face
-  double x = 0;                 ///< on the half-edge, or fraction along the source element
-  Vec2 towards = Vec2::Zero();  ///< to the unfolded source, in the frame of half-edge 3·face
-  bool straight = false;        ///< a front of parallel rays: of `towards` only the direction means something
-  std::size_t index = 0;        ///< in ExactFieldData: of the window that it goes by, or of the placed source
+  Index at = no_index;             ///< source element, vertex, or half-edge of the face
+  double x = 0;                    ///< on the half-edge, or fraction along the source element
+  Vec2 towards = Vec2::Zero();     ///< to the unfolded source, in the frame of half-edge 3·face
+  bool straight = false;           ///< a front of parallel rays: of `towards` only the direction means something
+  std::size_t placed = 0;          ///< index of the placed source in ExactFieldData
+  const Window* window = nullptr;  ///< that it goes by through the edge
 };
 
 /// Edges of a face that a way back must not go through, by the corner index of their tail.

@@ -40,7 +40,7 @@ class TreeBuilder {
     corners_ = {Vec3::Zero(), Vec3(geometry.length(3 * face), 0, 0), Vec3(apex.x(), apex.y(), 0)};
     for (int i = 0; i < 3; ++i) {
       const Index edge = data.mesh.edge_of(3 * face + i);
-      windows_[i] = data.windows.data() + data.first_window[edge];
+      windows_[i] = data.windows.of(edge);
       canonical_[i] = data.mesh.halfedge_of(edge) == 3 * face + i;
     }
   }
@@ -50,9 +50,7 @@ class TreeBuilder {
     for (std::size_t k = 0; k < data_.sources_in(face_).size(); ++k) all.emplace_back(NearCandidate::in_face, k);
     for (unsigned i = 0; i < 3; ++i) {
       const Index h = 3 * face_ + static_cast<Index>(i);
-      const Index edge = data_.mesh.edge_of(h);
-      const std::size_t count = data_.first_window[edge + 1] - data_.first_window[edge];
-      for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t k = 0; k < windows_[i].size(); ++k) {
         if (windows_[i][k].halfedge == h) all.emplace_back(i, k);
       }
     }
@@ -177,16 +175,13 @@ class TreeBuilder {
   Index face_;
   const Progress& progress_;
   FaceCorners corners_;
-  const Window* windows_[3];
+  std::span<const Window> windows_[3];
   bool canonical_[3];
 };
 
 std::size_t candidates_of(const ExactFieldData& data, Index face) {
   std::size_t count = data.sources_in(face).size();
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-    const Index edge = data.mesh.edge_of(h);
-    count += data.first_window[edge + 1] - data.first_window[edge];
-  }
+  for (Index h = 3 * face; h < 3 * face + 3; ++h) count += data.windows.of(data.mesh.edge_of(h)).size();
   return count;
 }
 

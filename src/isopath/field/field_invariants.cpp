@@ -83,15 +83,12 @@ void verify_edge_windows(const EdgeOfField& edge, std::span<const Window> window
 
 void verify_windows(const ExactFieldData& data) {
   const TriangleMesh& mesh = data.mesh;
-  std::vector<Window> windows;
   for (Index e = 0; e < mesh.n_edges(); ++e) {
     const Index h = mesh.halfedge_of(e);
     // Where both ends are reached, all points between are as near as the farther end and the edge together.
     const double start = data.distance[mesh.from(h)];
     const double end = data.distance[mesh.to(h)];
     if (data.reach < infinity && !(std::max(start, end) + data.geometry.length(h) <= data.reach)) continue;
-    windows.clear();
-    data.for_each_window(e, [&](const Window& w) { windows.push_back(w); });
     verify_edge_windows({.edge = e,
                          .halfedge = h,
                          .twin = mesh.twin(h),
@@ -100,7 +97,7 @@ void verify_windows(const ExactFieldData& data) {
                          .distance_at_end = end,
                          .size = data.geometry.size(),
                          .n_roots = static_cast<Index>(data.sources.elements().size())},
-                        windows);
+                        data.windows.of(e));
   }
 }
 

@@ -29,6 +29,10 @@ class IntrinsicGeometry {
   const Vec2& apex(Index halfedge) const { return apex_[halfedge]; }
   /// Interior angle of the half-edge's face at its tail, in [0, π].
   double angle_at_tail(Index halfedge) const { return angle_[halfedge]; }
+  /// The same of all half-edges.
+  std::span<const double> lengths() const { return length_; }
+  std::span<const Vec2> apexes() const { return apex_; }
+  std::span<const double> angles() const { return angle_; }
   double face_area(Index face) const { return 0.5 * length_[3 * face] * apex_[3 * face].y(); }
 
   /// A point given by barycentric coordinates of the half-edge's face, in the half-edge's frame.

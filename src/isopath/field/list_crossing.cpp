@@ -126,7 +126,7 @@ void ListPropagation::cross(Crossing& crossing, Workshop& workshop) {
   const Index previous = TriangleMesh::prev(h);
   for (const Index leaving : {previous, next}) prefetch_to_write(&sites_[std::max(sites_[leaving].twin, 0)]);
   const Index corner = sites_[previous].tail;
-  if (is_shared_) __builtin_prefetch(&mesh_.position(corner));
+  if (is_shared_) __builtin_prefetch(&positions_[corner]);
   const Site& site = sites_[h];
   const Site& right = sites_[next];
   const StepGeometry triangle{site.length,

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <utility>
 
+#include "isopath/field/bucket_queue.h"
 #include "isopath/field/prefetch.h"
 
 namespace isopath {
@@ -26,6 +27,7 @@ constexpr double widest_slit = 1e-9;
 constexpr double least_slope = 1e-20;
 /// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
 constexpr double bucket_width = 0.5;
+
 void note(const FrontOrder::Noted& noted, Index bucket, FrontOrder::Notes& notes) {
   if (bucket >= static_cast<Index>(notes.size())) notes.resize(bucket + 1);
   notes[bucket].push_back(noted);
@@ -47,6 +49,7 @@ double mean_length(const TriangleMesh& mesh, const IntrinsicGeometry& geometry) 
 ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain)
     : mesh_(mesh),
       geometry_(geometry),
+      numbering_(mesh),
       retain_(retain),
       sites_(mesh.n_halfedges()),
       states_(mesh.n_vertices()),
@@ -54,32 +57,52 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       source_at_(mesh.n_vertices(), no_index),
       fans_(retain ? mesh.n_halfedges() : 0),
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
+      own_positions_(numbering_.is_that_of_mesh() ? 0 : mesh.n_vertices()),
+      positions_(numbering_.is_that_of_mesh() ? mesh.soup().positions.data() : own_positions_.data()),
       bucket_width_(bucket_width * mean_length(mesh, geometry)),
       rounding_(geometry.rounding()),
+      margin_(rounding_),
       order_(mesh.bounds()) {
+  const LocalHalfedges halfedges(mesh, geometry, numbering_);
   const auto lay_out_sites = [&] {
     tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
       // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
-      const double shorter = std::min(geometry.length(TriangleMesh::next(h)), geometry.length(TriangleMesh::prev(h)));
-      const Vec2 apex(geometry.apex(h).x(), std::max(geometry.apex(h).y(), least_slope * shorter));
-      sites_[h] = {{nullptr, nullptr, nullptr}, geometry.length(h), apex, mesh.twin(h), mesh.from(h), not_waiting, 0};
+      const double shorter = std::min(halfedges.length(TriangleMesh::next(h)), halfedges.length(TriangleMesh::prev(h)));
+      const Vec2 apex(halfedges.apex(h).x(), std::max(halfedges.apex(h).y(), least_slope * shorter));
+      const Index twin = halfedges.twin(h);
+      sites_[h] = {{nullptr, nullptr, nullptr}, halfedges.length(h), apex, twin, halfedges.from(h), not_waiting, 0};
     });
   };
   // Spokes are counted by one thread alone.
-  tbb::parallel_invoke([&] { rings_ = VertexRings(mesh, geometry); }, lay_out_sites);
+  tbb::parallel_invoke([&] { rings_ = VertexRings(halfedges); }, lay_out_sites);
   tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
     const std::span<const Spoke> ring = rings_.of(v);
     double total_angle = 0;
     for (const Spoke& spoke : ring) total_angle += spoke.angle;
     const bool bends = isopath::may_bend(!is_closed(ring), total_angle);
     states_[v] = {total_angle, {no_index, 0, 0, Vec2::UnitX()}, no_index, not_waiting, bends, false};
+    if (!own_positions_.empty()) own_positions_[v] = mesh.position(numbering_.vertex_in_mesh(v));
   });
+}
+
+std::vector<double> ListPropagation::vertex_distances() const {
+  if (numbering_.is_that_of_mesh()) return distances_;
+  std::vector<double> distances(distances_.size());
+  for (Index v = 0; v < mesh_.n_vertices(); ++v) distances[v] = distances_[numbering_.vertex_here(v)];
+  return distances;
 }
 
 std::vector<Index> ListPropagation::vertex_roots() const {
   std::vector<Index> roots(states_.size());
-  for (std::size_t v = 0; v < states_.size(); ++v) roots[v] = states_[v].root;
+  for (Index v = 0; v < mesh_.n_vertices(); ++v) roots[v] = states_[numbering_.vertex_here(v)].root;
   return roots;
+}
+
+std::vector<FanArc> ListPropagation::fans() const {
+  if (numbering_.is_that_of_mesh()) return fans_;
+  std::vector<FanArc> fans(fans_.size());
+  for (Index h = 0; h < mesh_.n_halfedges(); ++h) fans[h] = fans_[numbering_.halfedge_here(h)];
+  return fans;
 }
 
 std::size_t ListPropagation::window_bytes() const {
@@ -94,36 +117,72 @@ std::size_t ListPropagation::propagated() const {
   return windows;
 }
 
-void ListPropagation::start(const SourceFronts& fronts, const MergeLimits& limits) {
+void ListPropagation::merge_within(const MergeLimits& limits) {
   limits_ = limits;
   margin_ = rounding_ + 2 * limits.accuracy;
+}
+
+double ListPropagation::reach_along_edges(double stop_distance, Progress& progress) const {
+  constexpr std::size_t between_checkpoints = 1 << 12;
+  std::vector<double> distances = distances_;
+  std::vector<double> handed_on(distances.size(), infinity);
+  BucketQueue queue(1);
+  const auto push = [&](Index vertex) {
+    queue.push(static_cast<float>(distances[vertex] / bucket_width_), static_cast<std::uint32_t>(vertex));
+  };
+  for (Index v = 0; v < mesh_.n_vertices(); ++v) {
+    if (distances[v] < infinity) push(v);
+  }
+  for (std::size_t visited = 0; !queue.empty(); ++visited) {
+    if (visited % between_checkpoints == 0) progress.checkpoint();
+    queue.n_next();
+    const std::uint32_t vertex = queue.pop();
+    const double distance = distances[vertex];
+    if (distance >= handed_on[vertex] || distance > stop_distance) continue;
+    handed_on[vertex] = distance;
+    for (const Spoke& spoke : rings_.of(static_cast<Index>(vertex))) {
+      if (distance + spoke.length >= distances[spoke.to]) continue;
+      distances[spoke.to] = distance + spoke.length;
+      push(spoke.to);
+    }
+  }
+  double farthest = 0;
+  for (const double distance : handed_on) {
+    if (distance < infinity) farthest = std::max(farthest, distance);
+  }
+  return farthest;
+}
+
+void ListPropagation::start(const SourceFronts& fronts) {
   Workshop& workshop = workshops_.emplace_back(retain_);
   for (const SourceFronts::Vertex& source : fronts.vertices) {
-    source_at_[source.vertex] = static_cast<Index>(source_arcs_.size());
+    const Index vertex = numbering_.vertex_here(source.vertex);
+    source_at_[vertex] = static_cast<Index>(source_arcs_.size());
     source_arcs_.push_back(source.blocked);
-    offer_vertex({source.vertex, source.root, 0, {mesh_.outgoing(source.vertex), 0, 0, Vec2::UnitX()}}, workshop);
+    const Index outgoing = numbering_.halfedge_here(mesh_.outgoing(source.vertex));
+    offer_vertex({vertex, source.root, 0, {outgoing, 0, 0, Vec2::UnitX()}}, workshop);
   }
   for (const SourceFronts::Front& front : fronts.fronts) {
-    const Index h = front.halfedge;
+    const Index h = numbering_.halfedge_here(front.halfedge);
+    const Index next = TriangleMesh::next(h);
     const Window& w = front.window;
-    const double length = geometry_.length(h);
+    const double length = geometry_.length(front.halfedge);
     // The fronts arrive from inside the half-edge's face, to which the way back leads.
     const auto back_at = [&](double x) { return Vec2(-w.direction(x).x(), std::max(-w.direction(x).y(), 0.0)); };
     const auto slack = [&](double x) { return w.kind == Window::Kind::point ? slack_at(w.radius(x)) : 0; };
-    if (w.begin == 0) offer_vertex({mesh_.from(h), w.root, w.distance(0), {h, slack(0), 0, back_at(0)}}, workshop);
+    if (w.begin == 0) offer_vertex({sites_[h].tail, w.root, w.distance(0), {h, slack(0), 0, back_at(0)}}, workshop);
     if (w.end == length) {
-      const Vec2 outgoing = geometry_.apex(h) - Vec2(length, 0);
+      const Vec2 outgoing = geometry_.apex(front.halfedge) - Vec2(length, 0);
       const Vec2 back = back_at(length);
-      offer_vertex(
-          {mesh_.to(h),
-           w.root,
-           w.distance(length),
-           {TriangleMesh::next(h), slack(length), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}},
-          workshop);
+      offer_vertex({sites_[next].tail,
+                    w.root,
+                    w.distance(length),
+                    {next, slack(length), 0, Vec2(outgoing.dot(back), isopath::cross(outgoing, back))}},
+                   workshop);
     }
     if (w.filler && retain_) {
-      const Index edge = mesh_.edge_of(h);
-      edge_sources_.emplace_back(edge, mesh_.halfedge_of(edge) == h ? w : w.flipped(length));
+      const Index edge = mesh_.edge_of(front.halfedge);
+      edge_sources_.emplace_back(edge, mesh_.halfedge_of(edge) == front.halfedge ? w : w.flipped(length));
     }
   }
   const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
@@ -140,7 +199,7 @@ void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fr
   std::vector<Arriving> arriving;
   for (Index i = 0; i < static_cast<Index>(fronts.size()); ++i) {
     const auto& [h, window] = fronts[i];
-    const Index place = waiting_place(h);
+    const Index place = waiting_place(numbering_.halfedge_here(h));
     if (place != no_index && !window.filler) arriving.push_back({place, i, geometry_.length(h) - window.end});
   }
   // One list for each half-edge: of a path's many fronts several arrive at the same one.
@@ -156,7 +215,7 @@ void ListPropagation::put_down_fronts(const std::vector<SourceFronts::Front>& fr
     block->least = infinity;
     for (std::size_t i = first; i < past; ++i) {
       const SourceFronts::Front& front = fronts[arriving[i].front];
-      const Window turned = front.window.flipped(sites_[front.halfedge].length);
+      const Window turned = front.window.flipped(geometry_.length(front.halfedge));
       blocks.arrays(block).set(i - first, turned);
       block->least = std::min(block->least, std::max(turned.min_distance(), 0.0));
     }
@@ -226,7 +285,7 @@ void ListPropagation::relax_edges(Index vertex, Workshop& workshop) const {
     Arrival arrival{no_index, slack > widest_slit ? slack : 0, from.arrival.error, Vec2::UnitX()};
     if (k == 0 && !is_closed(ring)) {
       arrival.halfedge = TriangleMesh::next(spoke.halfedge);
-      arrival.back = geometry_.apex(arrival.halfedge);
+      arrival.back = sites_[arrival.halfedge].apex;
     } else {
       arrival.halfedge = TriangleMesh::prev(ring[k > 0 ? k - 1 : ring.size() - 1].halfedge);
     }

@@ -11,6 +11,7 @@
 #include "isopath/core/progress.h"
 #include "isopath/core/team.h"
 #include "isopath/field/edge_envelope.h"
+#include "isopath/field/edge_windows.h"
 #include "isopath/field/front_order.h"
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
@@ -19,6 +20,7 @@
 #include "isopath/field/source_fronts.h"
 #include "isopath/field/vertex_fan.h"
 #include "isopath/field/window_list.h"
+#include "isopath/mesh/local_numbering.h"
 
 namespace isopath {
 
@@ -42,22 +44,21 @@ class ListPropagation {
   /// `retain` keeps the windows of every edge.
   ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain);
 
-  /// Lays out the sources; once, before run().
-  void start(const SourceFronts& fronts, const MergeLimits& limits = {});
+  /// Lays out the sources; once, before anything else.
+  void start(const SourceFronts& fronts);
+  /// About how far the farthest vertex is along edges, of those within the stop distance; between start() and run().
+  double reach_along_edges(double stop_distance, Progress& progress) const;
+  /// Lets windows be merged; before run().
+  void merge_within(const MergeLimits& limits);
   void run(double stop_distance, Progress& progress);
 
-  /// Windows side by side, edge after edge: those of edge e from first[e] up to first[e + 1].
-  struct RetainedWindows {
-    std::vector<Window> windows;
-    std::vector<std::size_t> first;
-  };
   /// The lower envelope on every edge of all that was propagated; once, after run().
-  RetainedWindows take_windows(Progress& progress);
+  EdgeWindows take_windows(Progress& progress);
 
-  const std::vector<double>& vertex_distances() const { return distances_; }
+  std::vector<double> vertex_distances() const;
   std::vector<Index> vertex_roots() const;
   /// Per half-edge.
-  std::vector<FanArc>& fans() { return fans_; }
+  std::vector<FanArc> fans() const;
   std::size_t propagated() const;
   /// Memory of the windows behind the front, in bytes.
   std::size_t window_bytes() const;
@@ -212,16 +213,18 @@ class ListPropagation {
   void run_lists(Team& team);
   void remember_crowded();
   /// Where threads that share the front meet; one thread alone asks for no order.
-  float along(Index vertex) const { return is_shared_ ? order_.along(mesh_.position(vertex)) : 0; }
+  float along(Index vertex) const { return is_shared_ ? order_.along(positions_[vertex]) : 0; }
   /// Turns the axis of the order to the present front.
   void turn_order();
 
-  void fetch_kept(Index edge) const;
-  void add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const;
+  void fetch_kept(Index halfedge) const;
+  /// The envelope on an edge, by its canonical half-edge.
+  void add_kept(EdgeEnvelope& envelope, Index halfedge, Index edge, std::vector<Window>& all) const;
   double snap_width(double edge_length) const;
 
   const TriangleMesh& mesh_;
   const IntrinsicGeometry& geometry_;
+  LocalNumbering numbering_;  ///< of vertices and half-edges below; of edges it is the mesh's
   bool retain_;
   MergeLimits limits_;
   LargeVector<Site> sites_;
@@ -235,6 +238,8 @@ class ListPropagation {
   std::vector<std::pair<Index, Window>> edge_sources_;  ///< by edge: sources on the edge itself
   std::vector<EdgeEnvelope> memories_;                  ///< of half-edges that are crossed again and again
   std::deque<Workshop> workshops_;                      ///< by member of the team
+  std::vector<Vec3> own_positions_;                     ///< of vertices, where they are numbered anew
+  const Vec3* positions_;
   double bucket_width_ = 1;
   double rounding_ = 0;  ///< of coordinates and distances
   double margin_ = 0;

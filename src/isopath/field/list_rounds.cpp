@@ -176,7 +176,7 @@ void ListPropagation::turn_order() {
   for (const Workshop& workshop : workshops_) {
     const std::size_t step = workshop.crossings.size() * workshops_.size() / places_of_order + 1;
     for (std::size_t i = 0; i < workshop.crossings.size(); i += step) {
-      places.push_back(mesh_.position(sites_[workshop.crossings[i].halfedge].tail));
+      places.push_back(positions_[sites_[workshop.crossings[i].halfedge].tail]);
     }
   }
   if (places.size() < places_of_order / 2 || !order_.turn(places)) return;

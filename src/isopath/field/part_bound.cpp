@@ -22,16 +22,16 @@ AtCorners ways_like(const ExactFieldData& data, const FacePart& part, const WayB
   for (int k = 0; k < 3; ++k) {
     const Vec3& corner = part.corner[k];
     if (way.stop == WayBack::Stop::source) {
-      lengths[k] = std::sqrt(squared_distance(data.face_sources[way.index], geometry.in_frame(3 * part.face, corner)));
+      lengths[k] = std::sqrt(squared_distance(data.face_sources[way.placed], geometry.in_frame(3 * part.face, corner)));
     } else if (way.stop == WayBack::Stop::vertex) {
       const Triangle& triangle = data.mesh.triangle(part.face);
       const auto i = std::find(triangle.begin(), triangle.end(), way.at) - triangle.begin();
       const Vec2 there = geometry.in_frame(3 * part.face, Vec3::Unit(i));
       lengths[k] = data.distance[way.at] + (there - geometry.in_frame(3 * part.face, corner)).norm();
-    } else if (way.stop == WayBack::Stop::edge && data.windows[way.index].halfedge == way.at) {
+    } else if (way.stop == WayBack::Stop::edge && way.window->halfedge == way.at) {
       Vec2 p = geometry.in_frame(way.at, corner);
       if (data.mesh.halfedge_of(data.mesh.edge_of(way.at)) != way.at) p = Vec2(geometry.length(way.at) - p.x(), -p.y());
-      lengths[k] = way_by(data.windows[way.index], p);
+      lengths[k] = way_by(*way.window, p);
     }
   }
   return lengths;

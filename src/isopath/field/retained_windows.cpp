@@ -13,10 +13,11 @@
 namespace isopath {
 namespace {
 
-constexpr Index edges_at_a_time = 1024;
+constexpr Index halfedges_at_a_time = 3 * 1024;
 constexpr std::size_t few = 16;
-/// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are needed.
-constexpr Index look_ahead = 8;
+/// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are
+/// needed.
+constexpr std::size_t look_ahead = 8;
 
 /// A stable sort that asks for no memory when there is little to sort.
 template <class Before>
@@ -37,9 +38,8 @@ double ListPropagation::snap_width(double edge_length) const {
   return std::min(0.25 * edge_length, std::max(1e-11 * edge_length, 2e-14 * geometry_.size()));
 }
 
-void ListPropagation::fetch_kept(Index edge) const {
-  const Index h = mesh_.halfedge_of(edge);
-  for (const Index side : {h, mesh_.twin(h)}) {
+void ListPropagation::fetch_kept(Index halfedge) const {
+  for (const Index side : {halfedge, sites_[halfedge].twin}) {
     if (side == no_index || kept_[side] == nullptr) continue;
     const char* list = reinterpret_cast<const char*>(kept_[side]);
     __builtin_prefetch(list);
@@ -47,9 +47,9 @@ void ListPropagation::fetch_kept(Index edge) const {
   }
 }
 
-void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<Window>& all) const {
-  const Index canonical = mesh_.halfedge_of(edge);
-  const double length = geometry_.length(canonical);
+void ListPropagation::add_kept(EdgeEnvelope& envelope, Index halfedge, Index edge, std::vector<Window>& all) const {
+  const Index twin = sites_[halfedge].twin;
+  const double length = sites_[halfedge].length;
   all.clear();
   const auto collect = [&](Index h, bool flip, Index enters) {
     for (const KeptList* list = kept_[h]; list != nullptr; list = list->next) {
@@ -63,9 +63,9 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
       }
     }
   };
-  const Index twin = mesh_.twin(canonical);
-  collect(canonical, twin == no_index, twin == no_index ? no_index : canonical);
-  if (twin != no_index) collect(twin, true, twin);
+  const bool is_boundary = twin == no_index;
+  collect(halfedge, is_boundary, is_boundary ? no_index : numbering_.halfedge_in_mesh(halfedge));
+  if (!is_boundary) collect(twin, true, numbering_.halfedge_in_mesh(twin));
   // Straight fronts first: where a point's circle only ties with them, the segment keeps the root.
   sort_few(all, [](const Window& a, const Window& b) {
     return a.kind != b.kind ? a.kind == Window::Kind::line : a.begin < b.begin;
@@ -89,44 +89,50 @@ void ListPropagation::add_kept(EdgeEnvelope& envelope, Index edge, std::vector<W
     if (distances_[vertex] == infinity) return;
     envelope.insert(along_edge(x, length, distances_[vertex], states_[vertex].arrival.error, states_[vertex].root));
   };
-  if (envelope.is_continuous(distances_[mesh_.from(canonical)], distances_[mesh_.to(canonical)])) {
+  const Index from = sites_[halfedge].tail;
+  const Index to = sites_[TriangleMesh::next(halfedge)].tail;
+  if (envelope.is_continuous(distances_[from], distances_[to])) {
     envelope.merge(limits_);
     return;  // ways along the edge are no shorter
   }
-  follow_from(mesh_.from(canonical), 0);
-  follow_from(mesh_.to(canonical), length);
+  follow_from(from, 0);
+  follow_from(to, length);
   envelope.close_jumps();
   envelope.merge(limits_);
 }
 
-ListPropagation::RetainedWindows ListPropagation::take_windows(Progress& progress) {
-  const Index n_parts = (mesh_.n_edges() + edges_at_a_time - 1) / edges_at_a_time;
-  std::vector<std::vector<Window>> parts(n_parts);
-  RetainedWindows retained;
-  retained.first.assign(mesh_.n_edges() + 1, 0);
+EdgeWindows ListPropagation::take_windows(Progress& progress) {
+  struct Owner {
+    Index halfedge;  ///< canonical in the mesh
+    Index edge;
+  };
+  const Index n = mesh_.n_halfedges();
+  const Index n_parts = (n + halfedges_at_a_time - 1) / halfedges_at_a_time;
+  EdgeWindows retained(mesh_.n_edges(), n_parts);
   tbb::parallel_for(tbb::blocked_range<Index>(0, n_parts, 1), [&](const tbb::blocked_range<Index>& range) {
     EdgeEnvelope envelope;
     std::vector<Window> all;
+    std::vector<Owner> owners;
     for (Index part = range.begin(); part < range.end(); ++part) {
       progress.checkpoint();
-      const Index past = std::min(mesh_.n_edges(), (part + 1) * edges_at_a_time);
-      for (Index edge = part * edges_at_a_time; edge < past; ++edge) {
-        fetch_kept(std::min(edge + look_ahead, past - 1));
-        add_kept(envelope, edge, all);
-        parts[part].insert(parts[part].end(), envelope.windows().begin(), envelope.windows().end());
-        retained.first[edge + 1] = envelope.windows().size();
+      owners.clear();
+      for (Index h = part * halfedges_at_a_time; h < std::min(n, (part + 1) * halfedges_at_a_time); ++h) {
+        const Index twin = sites_[h].twin;
+        if (twin != no_index && twin < h) continue;
+        const Index in_mesh = numbering_.halfedge_in_mesh(h);
+        const bool is_canonical = twin == no_index || in_mesh < numbering_.halfedge_in_mesh(twin);
+        owners.push_back({is_canonical ? h : twin, mesh_.edge_of(in_mesh)});
       }
-      parts[part].shrink_to_fit();
+      for (std::size_t i = 0; i < owners.size(); ++i) {
+        if (i + look_ahead < owners.size()) fetch_kept(owners[i + look_ahead].halfedge);
+        add_kept(envelope, owners[i].halfedge, owners[i].edge, all);
+        retained.add(part, owners[i].edge, envelope.windows());
+      }
+      retained.finish(part);
     }
   });
   workshops_.clear();
   kept_ = {};
-  for (Index edge = 0; edge < mesh_.n_edges(); ++edge) retained.first[edge + 1] += retained.first[edge];
-  retained.windows.reserve(retained.first.back());
-  for (std::vector<Window>& part : parts) {
-    retained.windows.insert(retained.windows.end(), part.begin(), part.end());
-    part = {};
-  }
   return retained;
 }
 

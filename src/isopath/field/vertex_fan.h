@@ -6,6 +6,7 @@
 
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
+#include "isopath/field/local_halfedges.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
@@ -34,7 +35,7 @@ struct Spoke {
 class VertexRings {
  public:
   VertexRings() = default;
-  VertexRings(const TriangleMesh& mesh, const IntrinsicGeometry& geometry);
+  explicit VertexRings(const LocalHalfedges& halfedges);
 
   std::span<const Spoke> of(Index vertex) const {
     return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);

@@ -128,12 +128,16 @@ class EdgeSearch {
     if (w.halfedge != h_ && !(by_any_ && passes_before(w, p_, canonical_))) return;
     if (improve(w, p_, widest_miss * length_, crossing_)) window_ = &w;
   }
-  void finish(const ExactFieldData& data, WayBack& best) const {
+  void finish(WayBack& best) const {
     if (window_ == nullptr) return;
-    best = {crossing_.distance,  window_->root,
-            WayBack::Stop::edge, h_,
-            crossing_.x,         crossing_.towards,
-            crossing_.straight,  static_cast<std::size_t>(window_ - data.windows.data())};
+    best = {.distance = crossing_.distance,
+            .root = window_->root,
+            .stop = WayBack::Stop::edge,
+            .at = h_,
+            .x = crossing_.x,
+            .towards = crossing_.towards,
+            .straight = crossing_.straight,
+            .window = window_};
     if (canonical_) return;
     best.x = length_ - best.x;
     best.towards = -best.towards;
@@ -157,9 +161,9 @@ void consider_edge(const ExactFieldData& data, Index h, const Vec3& barycentric,
   if (squared_width < 0) return;
   const double width = std::sqrt(squared_width);
   search.start(best.distance);
-  data.for_each_window(data.mesh.edge_of(h), p.x() - width, p.x() + width,
-                       [&](const Window& w) { search.consider(w); });
-  search.finish(data, best);
+  data.windows.for_each(data.mesh.edge_of(h), p.x() - width, p.x() + width,
+                        [&](const Window& w) { search.consider(w); });
+  search.finish(best);
 }
 
 Fronts fronts_for(const ExactFieldData& data, Index face, const SkippedEdges& skipped) {
@@ -222,13 +226,13 @@ WayBack best_way_back_among(const ExactFieldData& data, Index face, const Vec3& 
   while (next != candidates.end()) {
     const unsigned corner = next->where();
     const Index h = 3 * face + static_cast<Index>(corner);
-    const Window* windows = data.windows.data() + data.first_window[data.mesh.edge_of(h)];
+    const std::span<const Window> windows = data.windows.of(data.mesh.edge_of(h));
     EdgeSearch search(data, h, barycentric, fronts);
     search.start(best.distance);
     for (; next != candidates.end() && next->where() == corner; ++next) {
       if (!skipped.skip[corner]) search.consider(windows[next->number()]);
     }
-    search.finish(data, best);
+    search.finish(best);
   }
   turn_into_face(data.geometry, face, best);
   return best;

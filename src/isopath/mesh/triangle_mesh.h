@@ -40,6 +40,7 @@ class TriangleMesh {
   Index to(Index halfedge) const { return from(next(halfedge)); }
   /// The opposite half-edge, `no_index` on the boundary.
   Index twin(Index halfedge) const { return twin_[halfedge]; }
+  std::span<const Index> twins() const { return twin_; }
 
   Index edge_of(Index halfedge) const { return edge_of_halfedge_[halfedge]; }
   /// The edge's canonical half-edge.
@@ -51,6 +52,7 @@ class TriangleMesh {
   /// An outgoing half-edge of the vertex; the one without twin when the vertex is on the boundary, so that
   /// `next_outgoing` from it visits the whole fan. `no_index` for an unused vertex.
   Index outgoing(Index vertex) const { return outgoing_[vertex]; }
+  std::span<const Index> outgoing() const { return outgoing_; }
   /// The next outgoing half-edge counter-clockwise, `no_index` past the boundary. Interior fans come round.
   Index next_outgoing(Index halfedge) const { return twin_[prev(halfedge)]; }
   bool is_boundary_vertex(Index vertex) const {
