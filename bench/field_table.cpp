@@ -16,6 +16,7 @@
 #include "bumpy_ball.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/list_propagation.h"
+#include "support/hard_meshes.h"
 #include "support/test_meshes.h"
 
 namespace isopath {
@@ -100,6 +101,11 @@ class Table {
 };
 
 TriangleMesh wavy(int cells) { return test::wavy_sheet(cells, 1, 0.1, 6, 5, 1); }
+/// The same with vertices and triangles in random order.
+TriangleMesh scattered(int cells) {
+  test::Rng rng(1);
+  return test::renumbered(rng, wavy(cells)).mesh;
+}
 
 void fill(Table& table) {
   const auto from_vertex = [&](const std::string& name, std::initializer_list<int> sizes, const auto& make) {
@@ -116,18 +122,21 @@ void fill(Table& table) {
   from_vertex("wavy-point", {158, 316, 500, 707}, wavy);
   from_vertex("blade-point", {1000}, [](int chord) { return test::lofted_blade(50, chord); });
   from_vertex("ball-point", {6, 7}, bumpy_ball);
-  for (const double accuracy : {0.0, 1e-7, 1e-6, 1e-3}) {
-    const std::string name = fmt::format("wavy-boundary-{:g}", accuracy);
-    if (!table.wants(name)) continue;
+  from_vertex("scattered-point", {316, 707}, scattered);
+  const auto from_boundary = [&](const std::string& kind, double accuracy, const auto& make) {
+    const std::string name = fmt::format("{}-boundary-{:g}", kind, accuracy);
+    if (!table.wants(name)) return;
     for (const std::size_t threads : {1, 2}) {
       for (const int cells : {71, 224, 707}) {
         if (accuracy == 0 && cells > 224) continue;  // six million windows on a tenth of it
-        const TriangleMesh mesh = wavy(cells);
+        const TriangleMesh mesh = make(cells);
         const SourceSet source = boundary_source(mesh);
         table.add(name, mesh, threads, [&] { return retained(mesh, source, accuracy); });
       }
     }
-  }
+  };
+  for (const double accuracy : {0.0, 1e-7, 1e-6, 1e-3}) from_boundary("wavy", accuracy, wavy);
+  from_boundary("scattered", 1e-6, scattered);
 }
 
 }  // namespace
