@@ -10,6 +10,7 @@
 
 #include "isopath/core/error.h"
 #include "isopath/mesh/read_mesh.h"
+#include "isopath/mesh/repair.h"
 #include "isopath/mesh/self_intersections.h"
 #include "isopath/mesh/triangle_mesh.h"
 
@@ -168,6 +169,22 @@ TEST(Check, AgreesWithTriangleMeshOnWhatIsSound) {
       accepted = false;
     }
     EXPECT_EQ(check_mesh(soup).sound(), accepted) << "seed " << seed;
+  }
+}
+
+TEST(TriangleMesh, RefusesWhatIsTooSmallToSquare) {
+  const TriangleSoup soup = grid(3, 3);
+  const auto scaled = [&](double factor) {
+    TriangleSoup result = soup;
+    for (Vec3& p : result.positions) p *= factor;
+    return result;
+  };
+  for (const double factor : {1e-100, 1e-200, 1e-320}) {
+    EXPECT_THROW(TriangleMesh(scaled(factor)), Error);
+    EXPECT_THROW(repair_mesh(scaled(factor)), Error);
+  }
+  for (const double factor : {1e-69, 0.0}) {
+    EXPECT_NO_THROW(TriangleMesh(scaled(factor)));
   }
 }
 

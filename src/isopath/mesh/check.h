@@ -81,7 +81,7 @@ struct MeshReport {
   const Defect* find(DefectKind kind) const;
   /// How often the kind occurs.
   Index count(DefectKind kind) const;
-  /// True when no defect is an error: TriangleMesh accepts the soup.
+  /// True when no defect is an error: TriangleMesh accepts the soup, if it is not below smallest_size as a whole.
   bool sound() const;
 };
 

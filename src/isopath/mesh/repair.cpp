@@ -253,6 +253,7 @@ RepairResult repair_mesh(TriangleSoup soup, const RepairOptions& options, Progre
                  .value = listed(state.changes),
                  .advice = "the file holds no usable triangle; export the surface again"});
   }
+  require_usable_size(bounding_box(state.soup));
   return compact(std::move(state), n_input);
 }
 

@@ -46,7 +46,7 @@ struct RepairResult {
 /// cut where it disagrees. Where more than two triangles meet in an edge, the flattest consistent pairs stay joined and
 /// the others are cut off; vertices where sheets only touch are split.
 ///
-/// Throws Error(bad_input) when nothing is left.
+/// Throws Error(bad_input) when nothing is left, or when all of it is too small to compute with.
 RepairResult repair_mesh(TriangleSoup soup, const RepairOptions& options = {}, Progress& progress = Progress::none());
 
 }  // namespace isopath

@@ -45,6 +45,7 @@ void check_values(const TriangleSoup& soup) {
 TriangleMesh::TriangleMesh(TriangleSoup soup) : soup_(std::move(soup)) {
   check_values(soup_);
   bounds_ = bounding_box(soup_);
+  require_usable_size(bounds_);
   pair_halfedges();
   number_edges();
   choose_outgoing();

@@ -20,8 +20,8 @@ class TriangleMesh {
   TriangleMesh() = default;
 
   /// Throws Error(bad_input) that names the first offending element when a coordinate is not finite or too large to
-  /// square, an index is out of range, a triangle repeats a vertex, or an edge or vertex is not manifold and
-  /// consistently oriented.
+  /// square, the whole is too small to square, an index is out of range, a triangle repeats a vertex, or an edge or
+  /// vertex is not manifold and consistently oriented.
   explicit TriangleMesh(TriangleSoup soup);
 
   Index n_vertices() const { return static_cast<Index>(soup_.positions.size()); }

@@ -18,6 +18,8 @@ struct TriangleSoup {
 
 /// Coordinates beyond this cannot be used: squared lengths, and products of them, must stay finite.
 inline constexpr double largest_coordinate = 1e75;
+/// A mesh that is smaller, but larger than a point, has areas whose squares vanish. In mm.
+inline constexpr double smallest_size = 1e-70;
 
 /// True when all coordinates are finite and not beyond largest_coordinate.
 inline bool is_usable(const Vec3& position) {
@@ -26,5 +28,8 @@ inline bool is_usable(const Vec3& position) {
 
 /// Bounding box of the finite positions.
 Box3 bounding_box(const TriangleSoup& soup);
+
+/// Throws Error(bad_input) when the bounds of a mesh are below smallest_size, and no point.
+void require_usable_size(const Box3& bounds);
 
 }  // namespace isopath
