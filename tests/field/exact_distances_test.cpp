@@ -116,6 +116,38 @@ TEST(ExactDistances, TiesDoNotDependOnTheNumberOfThreads) {
   }
 }
 
+/// The boundary's corner (5, 4) of this grid is reached along the boundary and along the edge opposite, from two
+/// sources, in the same length and by the same half-edge.
+TEST(ExactDistances, TiesInACornerOfTheBoundaryDoNotDependOnTheNumberOfThreads) {
+  TriangleSoup soup = planar_grid(5, 5, 5, 5).soup();
+  std::vector<Triangle> triangles;
+  for (Index row = 0; row < 5; ++row) {
+    for (Index column = 0; column < 5; ++column) {
+      if (column >= 3 && row >= 4) continue;
+      const Index a = 6 * row + column;
+      const bool odd = (row + column) % 2 == 1;
+      triangles.push_back(odd ? Triangle{a, a + 1, a + 6} : Triangle{a, a + 1, a + 7});
+      triangles.push_back(odd ? Triangle{a + 1, a + 7, a + 6} : Triangle{a, a + 7, a + 6});
+    }
+  }
+  soup.triangles = triangles;
+  const TriangleMesh mesh(std::move(soup));
+  const IntrinsicGeometry geometry(mesh);
+  SourceSet sources;
+  sources.add_vertex(mesh, 1 * 6 + 5);
+  sources.add_vertex(mesh, 5 * 6 + 3);
+  const auto roots = [&] {
+    ListPropagation propagation(mesh, geometry, true);
+    propagation.start(source_fronts(mesh, geometry, sources));
+    propagation.run(infinity, Progress::none());
+    EXPECT_EQ(propagation.vertex_distances()[4 * 6 + 5], 3);
+    return propagation.vertex_roots();
+  };
+  const std::vector<Index> alone = with_threads(1, roots);
+  EXPECT_EQ(alone[4 * 6 + 5], 0);  // the first of the two
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(with_threads(threads, roots), alone) << threads << " threads";
+}
+
 TEST(ExactDistances, TheirReachAlongEdgesIsThatOfTheGraph) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);

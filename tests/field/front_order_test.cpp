@@ -74,6 +74,19 @@ TEST(FrontOrder, TurnsToWhereTheFrontIsWide) {
   EXPECT_NEAR(narrow, 0, 1e-5);
 }
 
+TEST(FrontOrder, KeepsItsSenseWhenItTurns) {
+  const auto axis_at = [](int k) {
+    const double angle = k * std::numbers::pi / 3;
+    return Vec3(std::cos(angle), std::sin(angle), 0);
+  };
+  FrontOrder order(bounds_of(ellipse(Vec3::UnitX(), Vec3::UnitY())));
+  for (int k = 1; k < 12; ++k) {
+    const std::vector<Vec3> places = ellipse(axis_at(k), Vec3::UnitZ());
+    ASSERT_TRUE(order.turn(places));
+    EXPECT_GT(order.along(places[0]), order.along(places[50])) << k;
+  }
+}
+
 TEST(FrontOrder, StaysWhereItIsWideEnough) {
   const std::vector<Vec3> circle = [] {
     std::vector<Vec3> places = ellipse(Vec3::UnitX() / 3, Vec3::UnitY());

@@ -10,6 +10,7 @@
 #include <exception>
 #include <mutex>
 #include <new>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -42,9 +43,9 @@ class Team {
   /// over things in the same order, a member finds in its cache what it left there. One loop at a time, always from the
   /// same thread, which is member 0.
   ///
-  /// Work that holds four words at most reaches the other members together with their parts; what it refers to they
-  /// fetch afterwards, one after the other, and between two processors far from each other each takes as long as an
-  /// item.
+  /// Work that holds four words at most, and may be copied byte by byte, reaches the other members together with their
+  /// parts; what it refers to they fetch afterwards, one after the other, and between two processors far from each
+  /// other each takes as long as an item.
   template <class Work>
   void share(std::size_t n, std::size_t at_a_time, const Work& work) {
     if constexpr (std::is_trivially_copyable_v<Work> && sizeof(Work) <= sizeof(Words)) {
@@ -67,7 +68,7 @@ class Team {
     std::atomic<Call> call = nullptr;
     std::atomic<std::size_t> n = 0;
     std::atomic<std::size_t> at_a_time = 1;
-    std::array<std::atomic<std::uint64_t>, 4> work{};
+    std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> work{};
   };
 
   template <class Work>

@@ -108,23 +108,32 @@ Floats moved_on(Floats here, Floats next) {
 }  // namespace
 
 FanLayout::FanLayout(const TriangleMesh& mesh)
-    : positions_(mesh.soup().positions.data()), unit_(unit_of(mesh)), first_(mesh.n_vertices() + 1) {
+    : numbering_(mesh),
+      own_positions_(numbering_.is_that_of_mesh() ? 0 : mesh.n_vertices()),
+      positions_(numbering_.is_that_of_mesh() ? mesh.soup().positions.data() : own_positions_.data()),
+      unit_(unit_of(mesh)),
+      first_(mesh.n_vertices() + 1) {
+  for (std::size_t v = 0; v < own_positions_.size(); ++v)
+    own_positions_[v] = mesh.position(numbering_.vertex_in_mesh(static_cast<Index>(v)));
+  lay_out_rings(LocalHalfedges(mesh, numbering_));
+}
+
+void FanLayout::lay_out_rings(const LocalHalfedges& halfedges) {
   // an end for each corner, and one more in each ring
-  ends_.resize(static_cast<std::size_t>(mesh.n_halfedges()) + static_cast<std::size_t>(mesh.n_vertices()) + read_past);
-  static_assert(sizeof(Triangle) == 3 * sizeof(Index));  // half-edge h starts at corner h of all
-  const Index* const corners = mesh.soup().triangles.empty() ? nullptr : mesh.soup().triangles.front().data();
+  ends_.resize(static_cast<std::size_t>(halfedges.n_halfedges()) + static_cast<std::size_t>(halfedges.n_vertices()) +
+               read_past);
   std::uint32_t* end = ends_.data();
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
+  for (Index v = 0; v < halfedges.n_vertices(); ++v) {
     const std::uint32_t* const first = end;
     first_[v] = static_cast<std::uint32_t>(first - ends_.data());
-    const Index start = mesh.outgoing(v);
+    const Index start = halfedges.outgoing(v);
     if (start == no_index) continue;
-    *end++ = static_cast<std::uint32_t>(mesh.to(start));
+    *end++ = static_cast<std::uint32_t>(halfedges.to(start));
     Index h = start;
     do {
-      const std::uint32_t back = before(static_cast<std::uint32_t>(h));
-      *end++ = static_cast<std::uint32_t>(corners[back]);
-      h = mesh.twin(static_cast<Index>(back));
+      const auto back = static_cast<Index>(before(static_cast<std::uint32_t>(h)));
+      *end++ = static_cast<std::uint32_t>(halfedges.from(back));
+      h = halfedges.twin(back);
     } while (h != start && h != no_index);
     most_spokes_ = std::max(most_spokes_, static_cast<std::size_t>(end - first));
   }

@@ -7,17 +7,22 @@
 
 #include "isopath/field/edge_front.h"
 #include "isopath/field/large_pages.h"
+#include "isopath/field/local_halfedges.h"
+#include "isopath/mesh/local_numbering.h"
 #include "isopath/mesh/triangle_mesh.h"
 
 namespace isopath {
 
 /// The neighbours of every vertex in order around it, one ring after the other in memory. Lengths and angles are worked
 /// out from the positions when a front comes: that takes less time than to write them all down and to wait for them
-/// later. The mesh must outlive it.
+/// later. Vertices have numbers of its own where those of the mesh lie in no order. The mesh must outlive it.
 class FanLayout {
  public:
   explicit FanLayout(const TriangleMesh& mesh);
+  FanLayout(const FanLayout&) = delete;
+  FanLayout& operator=(const FanLayout&) = delete;
 
+  std::uint32_t vertex_here(Index in_mesh) const { return static_cast<std::uint32_t>(numbering_.vertex_here(in_mesh)); }
   /// In a closed ring the first neighbour comes again at the end; empty where no face uses the vertex.
   std::span<const std::uint32_t> ring(std::uint32_t vertex) const {
     return {ends_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]};
@@ -45,6 +50,10 @@ class FanLayout {
  private:
   static constexpr std::size_t usual_ring = 6;
 
+  void lay_out_rings(const LocalHalfedges& halfedges);
+
+  LocalNumbering numbering_;
+  LargeVector<Vec3> own_positions_;  ///< where vertices are numbered anew
   const Vec3* positions_;
   double unit_ = 1;
   std::size_t most_spokes_ = 0;

@@ -31,7 +31,9 @@ bool FrontOrder::turn(std::span<const Vec3> places) {
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
   if (axis_.dot(spread * axis_) * size_ * size_ >= nearly * solver.eigenvalues()[2]) return false;
-  axis_ = solver.eigenvectors().col(2) / size_;
+  Vec3 axis = solver.eigenvectors().col(2);
+  if (axis.dot(axis_) < 0) axis = -axis;  // who began at one end goes on there
+  axis_ = axis / size_;
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <tuple>
@@ -25,7 +26,8 @@ namespace {
 constexpr double widest_slit = 1e-9;
 /// Rises less than any direction is known to.
 constexpr double least_slope = 1e-20;
-/// In mean edge lengths: narrower buckets make shorter lists, wider ones send windows ahead that are beaten later.
+/// In mean lengths of half-edges: narrower buckets make shorter lists, wider ones send windows ahead that are beaten
+/// later.
 constexpr double bucket_width = 0.5;
 
 void note(const FrontOrder::Noted& noted, Index bucket, FrontOrder::Notes& notes) {
@@ -59,22 +61,23 @@ ListPropagation::ListPropagation(const TriangleMesh& mesh, const IntrinsicGeomet
       kept_(retain ? mesh.n_halfedges() : 0, nullptr),
       own_positions_(numbering_.is_that_of_mesh() ? 0 : mesh.n_vertices()),
       positions_(numbering_.is_that_of_mesh() ? mesh.soup().positions.data() : own_positions_.data()),
-      bucket_width_(bucket_width * mean_length(mesh, geometry)),
+      bucket_width_(std::max(bucket_width * mean_length(mesh, geometry), std::numeric_limits<double>::min())),
       rounding_(geometry.rounding()),
       margin_(rounding_),
       order_(mesh.bounds()) {
-  const LocalHalfedges halfedges(mesh, geometry, numbering_);
+  const LocalHalfedges halfedges(mesh, numbering_);
+  const LocalGeometry local(geometry, numbering_);
   const auto lay_out_sites = [&] {
     tbb::parallel_for(Index(0), mesh.n_halfedges(), [&](Index h) {
       // A corner on the opposite edge lies above it all the same, so that rays along the edge know their sides of it.
-      const double shorter = std::min(halfedges.length(TriangleMesh::next(h)), halfedges.length(TriangleMesh::prev(h)));
-      const Vec2 apex(halfedges.apex(h).x(), std::max(halfedges.apex(h).y(), least_slope * shorter));
+      const double shorter = std::min(local.length(TriangleMesh::next(h)), local.length(TriangleMesh::prev(h)));
+      const Vec2 apex(local.apex(h).x(), std::max(local.apex(h).y(), least_slope * shorter));
       const Index twin = halfedges.twin(h);
-      sites_[h] = {{nullptr, nullptr, nullptr}, halfedges.length(h), apex, twin, halfedges.from(h), not_waiting, 0};
+      sites_[h] = {{nullptr, nullptr, nullptr}, local.length(h), apex, twin, halfedges.from(h), not_waiting, 0};
     });
   };
   // Spokes are counted by one thread alone.
-  tbb::parallel_invoke([&] { rings_ = VertexRings(halfedges); }, lay_out_sites);
+  tbb::parallel_invoke([&] { rings_ = VertexRings(halfedges, local); }, lay_out_sites);
   tbb::parallel_for(Index(0), mesh.n_vertices(), [&](Index v) {
     const std::span<const Spoke> ring = rings_.of(v);
     double total_angle = 0;
@@ -238,9 +241,13 @@ void ListPropagation::offer_vertex(const Offer& offer, Workshop& workshop) {
   const double distance = std::max(offer.distance, 0.0);
   VertexState& state = states_[offer.vertex];
   if (!(distance < distances_[offer.vertex])) {
-    // Of two ways as short as each other the same one must be kept, whichever thread found its way first.
+    // Of two ways as short as each other the same one must be kept, whichever thread found its way first. By one
+    // half-edge two may come: on the boundary, along it and along the edge opposite.
     if (distance > distances_[offer.vertex] || state.bucket == not_waiting) return;
-    if (offer.arrival.halfedge >= state.arrival.halfedge) return;
+    const auto rank = [](Index root, const Arrival& a) {
+      return std::tuple(a.halfedge, root, a.back.x(), a.back.y(), a.error, a.slack);
+    };
+    if (!(rank(offer.root, offer.arrival) < rank(state.root, state.arrival))) return;
   }
   std::atomic_ref<double>(distances_[offer.vertex]).store(distance, std::memory_order_relaxed);
   state.root = offer.root;

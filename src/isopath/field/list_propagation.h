@@ -35,14 +35,16 @@ struct FanArc {
 /// Lists and vertices wait in buckets by their least distance. A round takes all of the nearest bucket: vertices hand
 /// their distance on along their edges and send out fans, lists are trimmed and cross their triangle, all at the same
 /// time: while they do, no distance changes. What they found for vertices is taken over afterwards, and of two ways as
-/// short as each other the one from the half-edge with the lower number; so the result does not depend on the number of
-/// threads. A list that is put down may belong into the same bucket again, and a vertex may improve after it sent its
-/// fan (label correcting): it then sends another. Nothing is dropped but rays that are longer than a way that is known;
-/// the shortest ways stay.
+/// short as each other the one from the half-edge with the lower number, then from the lower root; so the result does
+/// not depend on the number of threads. A list that is put down may belong into the same bucket again, and a vertex may
+/// improve after it sent its fan (label correcting): it then sends another. Nothing is dropped but rays that are longer
+/// than a way that is known; the shortest ways stay.
 class ListPropagation {
  public:
   /// `retain` keeps the windows of every edge.
   ListPropagation(const TriangleMesh& mesh, const IntrinsicGeometry& geometry, bool retain);
+  ListPropagation(const ListPropagation&) = delete;
+  ListPropagation& operator=(const ListPropagation&) = delete;
 
   /// Lays out the sources; once, before anything else.
   void start(const SourceFronts& fronts);
@@ -202,7 +204,8 @@ class ListPropagation {
   void collect(FrontOrder::Notes& notes, std::vector<FrontOrder::Noted>& sorted) const;
   using Notes = FrontOrder::Notes Workshop::*;
   std::size_t n_waiting(Notes notes, const Workshop& workshop) const;
-  /// Calls work(workshop) for each, at the same time where there is much to do: offers to take over, and what is noted.
+  /// Calls work(workshop, among_others) for each, at the same time where there is much to do: offers to take over, and
+  /// what is noted.
   template <class Work>
   void each_workshop(Team& team, Notes notes, const Work& work);
   /// Calls work(items, first, past, member) for parts of the items of all workshops, at the same time.
@@ -216,6 +219,8 @@ class ListPropagation {
   float along(Index vertex) const { return is_shared_ ? order_.along(positions_[vertex]) : 0; }
   /// Turns the axis of the order to the present front.
   void turn_order();
+  /// Where what waits is on the axis of the order.
+  void place_notes();
 
   void fetch_kept(Index halfedge) const;
   /// The envelope on an edge, by its canonical half-edge.

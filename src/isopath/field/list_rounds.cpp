@@ -172,14 +172,18 @@ void ListPropagation::remember_crowded() {
 }
 
 void ListPropagation::turn_order() {
+  std::size_t n = 0;
+  for (const Workshop& workshop : workshops_) n += workshop.crossings.size();
+  const std::size_t step = n / places_of_order + 1;
   std::vector<Vec3> places;
   for (const Workshop& workshop : workshops_) {
-    const std::size_t step = workshop.crossings.size() * workshops_.size() / places_of_order + 1;
-    for (std::size_t i = 0; i < workshop.crossings.size(); i += step) {
+    for (std::size_t i = 0; i < workshop.crossings.size(); i += step)
       places.push_back(positions_[sites_[workshop.crossings[i].halfedge].tail]);
-    }
   }
-  if (places.size() < places_of_order / 2 || !order_.turn(places)) return;
+  if (places.size() >= places_of_order / 2 && order_.turn(places)) place_notes();
+}
+
+void ListPropagation::place_notes() {
   for (Workshop& workshop : workshops_) {
     for (auto& notes : workshop.halfedges) {
       for (FrontOrder::Noted& noted : notes) noted.along = along(sites_[noted.item].tail);
@@ -194,6 +198,7 @@ void ListPropagation::run(double stop_distance, Progress& progress) {
   Team team;
   while (workshops_.size() < team.size()) workshops_.emplace_back(retain_);
   is_shared_ = team.size() > 1;
+  if (is_shared_) place_notes();
   int rounds = 0;
   for (bucket_ = 0; bucket_ * bucket_width_ <= stop_distance; ++bucket_) {
     std::size_t past = 0;

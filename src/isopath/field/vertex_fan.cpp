@@ -17,24 +17,22 @@ double hit_fraction(const Vec2& p, const Vec2& q, const Vec2& d) {
 
 }  // namespace
 
-VertexRings::VertexRings(const LocalHalfedges& halfedges) : first_(halfedges.n_vertices() + 1) {
-  const auto is_on_boundary = [&](Index outgoing) {
-    return outgoing != no_index && halfedges.twin(outgoing) == no_index;
-  };
+VertexRings::VertexRings(const LocalHalfedges& halfedges, const LocalGeometry& geometry)
+    : first_(halfedges.n_vertices() + 1) {
   for (Index h = 0; h < halfedges.n_halfedges(); ++h) ++first_[halfedges.from(h) + 1];
   for (Index v = 0; v < halfedges.n_vertices(); ++v) {
-    first_[v + 1] += first_[v] + (is_on_boundary(halfedges.outgoing(v)) ? 1 : 0);
+    first_[v + 1] += first_[v] + (halfedges.is_boundary_vertex(v) ? 1 : 0);
   }
   spokes_.resize(first_.back());
   tbb::parallel_for(Index(0), halfedges.n_vertices(), [&](Index v) {
     Spoke* spoke = spokes_.data() + first_[v];
     const Index first = halfedges.outgoing(v);
     for (Index h = first; h != no_index;) {
-      *spoke++ = {halfedges.length(h), halfedges.angle_at_tail(h), h, halfedges.to(h)};
+      *spoke++ = {geometry.length(h), geometry.angle_at_tail(h), h, halfedges.to(h)};
       const Index incoming = TriangleMesh::prev(h);
       h = halfedges.twin(incoming);
       if (h == first) break;
-      if (h == no_index) *spoke++ = {halfedges.length(incoming), 0, no_index, halfedges.from(incoming)};
+      if (h == no_index) *spoke++ = {geometry.length(incoming), 0, no_index, halfedges.from(incoming)};
     }
   });
 }

@@ -6,6 +6,7 @@
 
 #include "isopath/field/intrinsic_geometry.h"
 #include "isopath/field/large_pages.h"
+#include "isopath/field/local_geometry.h"
 #include "isopath/field/local_halfedges.h"
 #include "isopath/mesh/triangle_mesh.h"
 
@@ -18,7 +19,7 @@ struct BlockedArc {
   double half_width = 0;
 };
 
-/// Angles are sums of a few arcus tangents, each good to 1e-16; a fan is opened this much wider than its shadow.
+/// Angles are sums of a few arcus tangents, each good to 5e-16; a fan is opened this much wider than its shadow.
 constexpr double angle_slack = 1e-12;
 
 /// An edge at a vertex, and the face that follows it counter-clockwise.
@@ -35,7 +36,7 @@ struct Spoke {
 class VertexRings {
  public:
   VertexRings() = default;
-  explicit VertexRings(const LocalHalfedges& halfedges);
+  VertexRings(const LocalHalfedges& halfedges, const LocalGeometry& geometry);
 
   std::span<const Spoke> of(Index vertex) const {
     return std::span(spokes_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);

@@ -355,7 +355,8 @@ void Propagation::start_at(std::uint32_t vertex, double distance, Arrival arriva
 }
 
 void Propagation::start_ways(std::span<const StraightWays::Way> ways, double before, const Arrival& arrival) {
-  for (const StraightWays::Way& way : ways) start_at(way.to, before + way.length, arrival);
+  for (const StraightWays::Way& way : ways)
+    start_at(fans_.vertex_here(static_cast<Index>(way.to)), before + way.length, arrival);
 }
 
 /// Whether the front around a point of a source is a circle: at single points, ends and corners, not where two segments
@@ -365,7 +366,7 @@ bool Propagation::is_corner(const SourceSet& sources, const SourceElement& point
   const Support support = support_of(mesh_, point.a);
   if (support.kind == Support::Kind::vertex && mesh_.is_boundary_vertex(support.index)) {
     at_hand_.clear();
-    at_hand_.add(static_cast<std::uint32_t>(support.index), arrivals_.data());
+    at_hand_.add(fans_.vertex_here(support.index), arrivals_.data());
     return at_hand_[0].bends;
   }
   const auto direction = [&](Index k) -> Vec3 {
@@ -406,7 +407,7 @@ void Propagation::start_from(const SourceSet& sources, std::uint32_t k, std::siz
   Arrival arrival{0, is_circle ? 0 : no_centre, static_cast<std::uint32_t>(mesh_.n_vertices()) + k,
                   root_of(n_chains_) | is_seen};
   if (at_vertex) {
-    arrival.source = static_cast<std::uint32_t>(support.index);
+    arrival.source = fans_.vertex_here(support.index);
     start_at(arrival.source, 0, arrival);
     if (is_circle) start_ways(ways_.from_vertex(support.index, most_faces), 0, arrival);
   } else {
@@ -449,7 +450,7 @@ void Propagation::run(Progress& progress) {
 
 std::vector<double> Propagation::distances() const {
   std::vector<double> result(arrivals_.size());
-  for (std::size_t v = 0; v < result.size(); ++v) result[v] = arrivals_[v].distance * fans_.unit();
+  for (Index v = 0; v < mesh_.n_vertices(); ++v) result[v] = arrivals_[fans_.vertex_here(v)].distance * fans_.unit();
   return result;
 }
 

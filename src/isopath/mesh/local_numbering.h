@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "isopath/mesh/triangle_mesh.h"
@@ -19,6 +20,8 @@ class LocalNumbering {
 
   Index vertex_here(Index in_mesh) const { return is_that_of_mesh() ? in_mesh : vertices_.here[in_mesh]; }
   Index vertex_in_mesh(Index here) const { return is_that_of_mesh() ? here : vertices_.in_mesh[here]; }
+  void prefetch_vertex(Index in_mesh) const { __builtin_prefetch(&vertices_.here[in_mesh]); }
+  void prefetch_halfedge(Index in_mesh) const { __builtin_prefetch(&faces_.here[std::max(in_mesh, 0) / 3]); }
   /// `no_index` stays what it is.
   Index halfedge_here(Index in_mesh) const {
     return is_that_of_mesh() || in_mesh == no_index ? in_mesh : 3 * faces_.here[in_mesh / 3] + in_mesh % 3;
