@@ -9,6 +9,7 @@
 #include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
 #include "isopath/field/exact_field_data.h"
+#include "isopath/field/virtual_source.h"
 #include "isopath/mesh/local_numbering.h"
 #include "support/hard_meshes.h"
 #include "support/random_sources.h"
@@ -116,6 +117,25 @@ TEST(ScatteredMesh, HasTheSameFieldFromItsBoundaryAndUpToAStop) {
     }
     if (stop == infinity) expect_same(pair, field, other, rng);
   }
+}
+
+/// Virtual sources take what comes first of what is nearly as near: so their errors depend on the order a little.
+TEST(ScatteredMesh, HasNearlyTheSameDistancesByVirtualSources) {
+  Rng rng(5);
+  Pair pair(rng, wavy_sheet(120, 100, 10, 0.06, 0.05, 5));
+  pair.add_vertex(pair.mesh.from(random_index(rng, pair.mesh.n_halfedges())));
+  pair.add_point(random_surface_point(rng, pair.mesh));
+  pair.add_polyline(random_polyline(rng, pair.mesh, 30));
+  pair.add_halfedges({0, 1}, false);
+  const std::vector<double> expected = virtual_source_distances(pair.mesh, pair.sources);
+  const std::vector<double> found = virtual_source_distances(pair.other.mesh, pair.other_sources);
+  double sum = 0;
+  for (Index v = 0; v < pair.mesh.n_vertices(); ++v) {
+    const double off = std::abs(found[pair.other.vertex[v]] - expected[v]);
+    ASSERT_LT(off, 1e-3 * pair.mesh.size()) << "vertex " << v;
+    sum += off;
+  }
+  EXPECT_LT(sum / pair.mesh.n_vertices(), 1e-6 * pair.mesh.size());
 }
 
 TEST(ScatteredMesh, KeepsTheBoundThatWasAskedFor) {
