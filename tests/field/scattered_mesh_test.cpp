@@ -8,7 +8,6 @@
 
 #include "isopath/field/exact_distances.h"
 #include "isopath/field/exact_field.h"
-#include "isopath/field/exact_field_data.h"
 #include "isopath/field/virtual_source.h"
 #include "isopath/mesh/local_numbering.h"
 #include "support/hard_meshes.h"

@@ -92,13 +92,6 @@ TEST(NestedPlan, HandlesGetATwoWayCurveAndAWarning) {
                           [](const std::string& text) { return text.find("handles") != std::string::npos; }));
 }
 
-double length_of(const TriangleMesh& mesh, const std::vector<SurfacePoint>& path) {
-  double sum = 0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    sum += (position_of(mesh, path[i]) - position_of(mesh, path[i - 1])).norm();
-  return sum;
-}
-
 /// Prim's tree over all pairs of loops, each distance from a field of its own.
 double least_tree_length(const TriangleMesh& mesh) {
   const std::size_t n = mesh.boundary_loops().size();
@@ -146,7 +139,7 @@ TEST(HoleBridges, AreTheShortestTreeOfLoopsAndLeaveADisc) {
     const auto bridges = hole_bridges(mesh);
     ASSERT_EQ(bridges.size(), holes.size());
     double sum = 0;
-    for (const auto& bridge : bridges) sum += length_of(mesh, bridge);
+    for (const auto& bridge : bridges) sum += test::length_of(mesh, bridge);
     EXPECT_NEAR(sum, least_tree_length(mesh), 1e-4);
 
     const auto opened = opened_holes(mesh, 1.5, Progress::none());

@@ -7,8 +7,8 @@
 #include "isopath/field/edge_windows.h"
 #include "isopath/field/face_trees.h"
 #include "isopath/field/intrinsic_geometry.h"
-#include "isopath/field/list_propagation.h"
 #include "isopath/field/source.h"
+#include "isopath/field/vertex_fan.h"
 
 namespace isopath {
 

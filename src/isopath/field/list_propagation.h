@@ -24,12 +24,6 @@
 
 namespace isopath {
 
-/// Directions, from a half-edge counter-clockwise, in which its tail sends a fan into its face; none when low > high.
-struct FanArc {
-  double low = infinity;
-  double high = -infinity;
-};
-
 /// Exact distances, by whole lists of windows that cross triangles (Qin et al. 2016), in rounds.
 ///
 /// Lists and vertices wait in buckets by their least distance. A round takes all of the nearest bucket: vertices hand

@@ -19,6 +19,12 @@ struct BlockedArc {
   double half_width = 0;
 };
 
+/// Directions, from a half-edge counter-clockwise, in which its tail sends a fan into its face; none when low > high.
+struct FanArc {
+  double low = infinity;
+  double high = -infinity;
+};
+
 /// Angles are sums of a few arcus tangents, each good to 5e-16; a fan is opened this much wider than its shadow.
 constexpr double angle_slack = 1e-12;
 
