@@ -56,6 +56,13 @@ TEST(LocalNumbering, IsThatOfTheMeshWhereNeighboursAreNear) {
   }
 }
 
+/// Whichever of a grid's half-edges the sample happens to meet: those to the next row are far from their twins.
+TEST(LocalNumbering, IsThatOfGridsWithLongRows) {
+  for (int rows = 20; rows < 32; ++rows) {
+    EXPECT_TRUE(LocalNumbering(planar_grid(5000, rows, 1, 1)).is_that_of_mesh()) << rows << " rows";
+  }
+}
+
 TEST(LocalNumbering, LeavesMeshesAloneThatFitIntoACache) {
   Rng rng(1);
   EXPECT_TRUE(LocalNumbering(renumbered(rng, wavy_sheet(40, 1, 0.1, 6, 5, 1)).mesh).is_that_of_mesh());

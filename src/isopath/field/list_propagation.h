@@ -33,6 +33,9 @@ namespace isopath {
 /// not depend on the number of threads. A list that is put down may belong into the same bucket again, and a vertex may
 /// improve after it sent its fan (label correcting): it then sends another. Nothing is dropped but rays that are longer
 /// than a way that is known; the shortest ways stay.
+///
+/// Inside, vertices and half-edges have the numbers of a LocalNumbering; sources come in and results go out by those of
+/// the mesh.
 class ListPropagation {
  public:
   /// `retain` keeps the windows of every edge.

@@ -17,17 +17,15 @@ LocalHalfedges::LocalHalfedges(const TriangleMesh& mesh, const LocalNumbering& n
   own_twin_.resize(twin_.size());
   own_tail_.resize(tail_.size());
   own_outgoing_.resize(outgoing_.size());
-  const auto fetch = [&](Index in_mesh) {
-    __builtin_prefetch(&twin_[in_mesh]);
-    __builtin_prefetch(&tail_[in_mesh]);
-  };
-  const auto look = [&](Index in_mesh) {
-    for (Index h = in_mesh; h < in_mesh + 3; ++h) {
+  const auto fetch = [&](Index later, Index soon) {
+    __builtin_prefetch(&twin_[later]);
+    __builtin_prefetch(&tail_[later]);
+    for (Index h = soon; h < soon + 3; ++h) {
       numbering.prefetch_halfedge(twin_[h]);
       numbering.prefetch_vertex(tail_[h]);
     }
   };
-  copy_halfedges(numbering, n_halfedges(), fetch, look, [&](Index here, Index in_mesh) {
+  copy_halfedges(numbering, n_halfedges(), fetch, [&](Index here, Index in_mesh) {
     own_twin_[here] = numbering.halfedge_here(twin_[in_mesh]);
     own_tail_[here] = numbering.vertex_here(tail_[in_mesh]);
   });

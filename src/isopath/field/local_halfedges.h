@@ -40,18 +40,19 @@ class LocalHalfedges {
   LargeVector<Index> own_outgoing_;
 };
 
-/// Calls copy(here, in_mesh) for the half-edges of all faces, in parallel, in the order of their numbers here; and
-/// fetch(in_mesh) for the first one of a face some time before, since in the mesh they may lie anywhere.
-template <class Fetch, class Look, class Copy>
-void copy_halfedges(const LocalNumbering& numbering, Index n_halfedges, const Fetch& fetch, const Look& look,
-                    const Copy& copy) {
+/// Calls copy(here, in_mesh) for the half-edges of all faces, in parallel, in the order of their numbers here. In the
+/// mesh they may lie anywhere: before each face fetch(later, soon) is called with the first half-edges, in the mesh, of
+/// two faces that come after it, to fetch into the cache what the later one needs, and what that tells by the time it
+/// has become the sooner one.
+template <class Fetch, class Copy>
+void copy_halfedges(const LocalNumbering& numbering, Index n_halfedges, const Fetch& fetch, const Copy& copy) {
   constexpr Index faces_at_a_time = 1024;
   constexpr Index ahead = 16;
   const tbb::blocked_range<Index> all(0, n_halfedges / 3, faces_at_a_time);
   tbb::parallel_for(all, [&](const tbb::blocked_range<Index>& faces) {
     for (Index face = faces.begin(); face < faces.end(); ++face) {
-      fetch(numbering.halfedge_in_mesh(3 * std::min(face + ahead, faces.end() - 1)));
-      look(numbering.halfedge_in_mesh(3 * std::min(face + ahead / 2, faces.end() - 1)));
+      fetch(numbering.halfedge_in_mesh(3 * std::min(face + ahead, faces.end() - 1)),
+            numbering.halfedge_in_mesh(3 * std::min(face + ahead / 2, faces.end() - 1)));
       const Index in_mesh = numbering.halfedge_in_mesh(3 * face);
       for (Index i = 0; i < 3; ++i) copy(3 * face + i, in_mesh + i);
     }

@@ -15,8 +15,7 @@ namespace {
 
 constexpr Index halfedges_at_a_time = 3 * 1024;
 constexpr std::size_t few = 16;
-/// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are
-/// needed.
+/// Lists lie in memory in the order in which they crossed: they are fetched this many edges before they are needed.
 constexpr std::size_t look_ahead = 8;
 
 /// A stable sort that asks for no memory when there is little to sort.

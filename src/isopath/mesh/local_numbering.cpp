@@ -15,23 +15,26 @@ namespace {
 /// rarely in it together.
 constexpr Index halfedges_in_cache = 1 << 14;
 constexpr Index vertices_in_cache = 1 << 12;
-/// Looked at to tell whether neighbours are near.
-constexpr Index sample = 4096;
+/// So many faces are looked at to tell whether neighbours are near.
+constexpr Index sample = 2048;
 constexpr int most_levels = 10;
 
 bool is_scattered(const TriangleMesh& mesh) {
-  const Index step = mesh.n_halfedges() / sample + 1;
+  const Index step = mesh.n_faces() / sample + 1;
   Index edges = 0;
   Index far_vertices = 0;
   Index pairs = 0;
   Index far_pairs = 0;
-  for (Index h = 0; h < mesh.n_halfedges(); h += step) {
-    ++edges;
-    if (std::abs(mesh.from(h) - mesh.to(h)) > vertices_in_cache) ++far_vertices;
-    const Index twin = mesh.twin(h);
-    if (twin == no_index) continue;
-    ++pairs;
-    if (std::abs(h - twin) > halfedges_in_cache) ++far_pairs;
+  // Whole faces: of single half-edges a regular grid might show those alone that lead to another row.
+  for (Index face = 0; face < mesh.n_faces(); face += step) {
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      ++edges;
+      if (std::abs(mesh.from(h) - mesh.to(h)) > vertices_in_cache) ++far_vertices;
+      const Index twin = mesh.twin(h);
+      if (twin == no_index) continue;
+      ++pairs;
+      if (std::abs(h - twin) > halfedges_in_cache) ++far_pairs;
+    }
   }
   // In rows of a grid two of three neighbours of a vertex are in other rows, and of a face every third one.
   return 4 * far_vertices > 3 * edges || 2 * far_pairs > pairs;
